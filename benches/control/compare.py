@@ -168,7 +168,7 @@ def play(judge, motion, entrants):
 def entrants(scenario, judge):
     """Each library, with the fastest of the solvers that it can use and that fails least."""
     chosen = []
-    for kind in servos.ALL:
+    for kind in (k for k in servos.ALL if servos.can(k, scenario)):
         trials = []
         for solver in kind.solvers:
             servo = kind(scenario, DT, judge, solver)

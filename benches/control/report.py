@@ -90,7 +90,8 @@ and pink, 1/dt here), in one level with weight 1 for metres and radians; a postu
 beside them, here it is the lowest level. Limits are positions and speeds of the joints; none has
 acceleration limits. mink and pink use the solver that fails least and is fastest, of daqp, quadprog
 and proxqp, for each robot. A second row of this library puts the feet first, then the centre of
-mass, then each frame on a level of its own.
+mass, then each frame on a level of its own; the last row, where all targets are poses, jumps to a
+solution of the inverse kinematics in every step, without a servo.
 
 Targets are figures of eight in random planes with rotations about random axes, {facts['motions']}
 motions of {facts['seconds']:.0f} s for each robot, first within reach and speeds, then with
@@ -103,9 +104,9 @@ The last column is the median beside that of the first row.
 """]
     lines += ["""## In brief
 Each figure is that of the other library divided by that of the first row of this one; above 1 this
-library is faster or nearer. Where limits stop a level, this library shortens the motion of the whole
-level before it changes its direction; the others minimise the sum of squares, which leaves smaller
-errors.
+library is faster or nearer. Where limits stop a level, this library shortens the motion of the
+whole level before it changes its direction; the others minimise the sum of squares, which leaves
+smaller errors.
 """, *summary(results), ""]
     for name, scenario in results.items():
         lines.append(f"## {name}\n{scenario['text'][0].upper()}{scenario['text'][1:]}.\n")

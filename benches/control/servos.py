@@ -99,6 +99,19 @@ class Levels(Cylindroid):
         return {f: i for i, together in enumerate(order) for f in together}
 
 
+class Solutions(Cylindroid):
+    """No servo: the robot jumps to a solution of the inverse kinematics near the last."""
+
+    name = "cylindroid, ik each cycle"
+
+    def step(self, k):
+        answer = self.robot.ik(self.targets[k], q0=self.q, iterations=200)
+        if answer.success:
+            self.q = answer.q
+        else:
+            self.failures += 1
+
+
 class Mink(Servo):
     name, solvers = "mink", ("daqp", "quadprog", "proxqp")
 
@@ -253,4 +266,9 @@ class Placo(Servo):
         return self.judge.positions([self.robot.get_joint(n) for n in self.judge.names], base)
 
 
-ALL = [Cylindroid, Levels, Mink, Pink, Placo]
+ALL = [Cylindroid, Levels, Mink, Pink, Placo, Solutions]
+
+
+def can(kind, scenario):
+    """The inverse kinematics take poses of frames."""
+    return kind is not Solutions or not (scenario.points or scenario.com)

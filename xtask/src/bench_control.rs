@@ -35,6 +35,11 @@ pub(crate) fn compare(arguments: &[String]) -> Result<()> {
     start("compare.py", "control-benchmarks.md", arguments)
 }
 
+/// `cargo xtask plants`: robots simulated by MuJoCo.
+pub(crate) fn plants(arguments: &[String]) -> Result<()> {
+    start("plants.py", "plants.md", arguments)
+}
+
 fn start(program: &str, page: &str, arguments: &[String]) -> Result<()> {
     let Installed { folder, python, robots } = install()?;
     let quick = arguments.iter().any(|a| a == "--quick");

@@ -62,6 +62,10 @@ cargo xtask <task>
             this library follow the same targets with several frames at once, and writes
             docs/control-benchmarks.* (--quick: a fifteenth of it, written to
             target/bench-control/quick)
+  plants [--quick] [--targets N] [--only ROBOT]
+            drives robots that MuJoCo simulates, with lag, delays, noise and lost cycles, beside
+            mink (installed like the libraries of bench-control), and writes docs/plants.*
+            (--quick: 4 targets of each kind instead of 50, written to target/bench-control/quick)
   instructions [--write]
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
@@ -105,6 +109,7 @@ fn run() -> Result<()> {
         Some("bench-control") => {
             bench_control::compare(&std::env::args().skip(2).collect::<Vec<String>>())
         }
+        Some("plants") => bench_control::plants(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("instructions") => {
             instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
         }
