@@ -57,18 +57,15 @@ def write(folder, facts, results):
 This run: commit {facts['commit']}; {versions}; {facts['targets']} targets in each row.
 
 The physics take steps of 1 ms. A drive follows the commanded velocity, or the position to which the
-commands add up, with a lag of {facts['lag'] * 1e3:.0f} ms beside its own stiffness; gravity is
-compensated. Encoders have noise of {facts['noise']:g} rad or m, {100 * facts['dropped']:g} % of all
-cycles are lost, the servo sees the actuated joints only. The four drives take turns: velocities at
-500 Hz with a delay of 1 ms and at 100 Hz with 20 ms, positions likewise. Position limits are not
-stops here: the robot can be driven beyond them.
+commands add up, with a lag of {facts['lag'] * 1e3:.0f} ms beside its own stiffness; gravity is compensated. Encoders have
+noise of {facts['noise']:g} rad or m, {100 * facts['dropped']:g} % of all cycles are lost, and only the actuated joints are measured.
+The four drives take turns: velocities at 500 Hz with a delay of 1 ms and at 100 Hz with 20 ms,
+positions likewise. Position limits are not stops here: the robot can be driven beyond them.
 
-Beside it mink, with its own damping (1e-12) and with 0.01, follows the same targets with the same
-gain (5/s), limits of positions and speeds;
-this library has limits of acceleration too (10 rad/s² or m/s²). Both know the twist of the
-target.
-Parallel robots are driven beside it by a loop on the measured drives, with their inverse kinematics
-in closed form.
+mink, with its own damping (1e-12) and with 0.01, follows the same targets with the same gain (5/s)
+and the same limits of positions and speeds; this library has limits of acceleration too (10 rad/s²
+or m/s²). Both know the twist of the target. Parallel robots are driven beside it by a loop on the
+measured drives, with their inverse kinematics in closed form.
 
 A moving target is followed if the median error of the second half is below 10 mm and 50 mrad, a
 wrist singularity is reached within 1 mm and 5 mrad. At a target beyond the workspace the robot must
@@ -84,13 +81,13 @@ refused a step.
         for robot, rows in chosen.items():
             lines += [row(robot, who, runs) for who, runs in rows.items()]
         lines.append("")
-    lines += ["## By drive", *HEAD]
+    lines += ["## By drive, targets within reach", *HEAD]
     for i, (mode, rate, delay) in enumerate(facts["drives"]):
+        by = {}
+        for kinds in results.values():
+            for kind, rows in kinds.items():
+                for who, runs in rows.items() if kind != "edge" else ():
+                    by.setdefault(who, []).extend(r for r in runs if r["drive"] == i)
         label = f"{mode}, {rate} Hz, {delay * 1e3:.0f} ms"
-        for ours in (True, False):
-            runs = [r for rows in results.values() for kinds in rows.values()
-                    for who, of in kinds.items() for r in of
-                    if (who == "cylindroid") == ours and r["drive"] == i]
-            if runs:
-                lines.append(row(label, "cylindroid" if ours else "mink, loops", runs))
+        lines += [row(label, who, runs) for who, runs in by.items() if runs]
     (folder / "plants.md").write_text("\n".join(lines).rstrip() + "\n")
