@@ -18,6 +18,7 @@
 
 mod clamping;
 mod feasible;
+mod free;
 mod keep;
 mod level;
 mod minimise;

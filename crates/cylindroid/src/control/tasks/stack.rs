@@ -108,6 +108,10 @@ impl TaskServo {
                     }
                 }
             }
+            if !stack.direction_changed && self.set.solve_freely(whole, self.options.eps) {
+                (stack.scale, stack.left_out, stack.stopped_by) = (1.0, 0.0, None);
+                continue;
+            }
             let size = norm(&whole.target);
             let left_out = self.set.reduce_target(whole, self.options.eps);
             stack.left_out = if size > 0.0 { left_out / size } else { 0.0 };

@@ -28,7 +28,7 @@ impl ActiveSet {
         for round in 0..self.y.len() {
             let columns = self.working.len();
             level.project(&self.basis, columns);
-            level.svd.decompose(&level.projected);
+            level.svd.decompose_warm(&level.projected);
             let mut rank = 0;
             for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
                 let is_kept = s > precision.rank * level.scale;

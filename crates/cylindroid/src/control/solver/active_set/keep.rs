@@ -14,7 +14,7 @@ impl ActiveSet {
         level.scale = level.rows.frobenius_norm();
         level.load_residual(&self.y);
         level.project(&self.basis, self.fixed);
-        level.svd.decompose(&level.projected);
+        level.svd.decompose_warm(&level.projected);
         level.along.fill(0.0);
         for i in 0..level.svd.len() {
             if level.svd.value(i) > eps * level.scale {

@@ -3,7 +3,7 @@
 //! Shapes   A: m x n, b: m
 //! Checked  src/control/solver/hierarchy/tests.rs
 
-use crate::linalg::{Matrix, Svd, norm};
+use crate::linalg::{Elimination, Matrix, RankGap, Svd, norm};
 
 /// The rows of a level, their targets and the memory to solve it.
 #[derive(Debug, Clone)]
@@ -21,7 +21,16 @@ pub(in crate::control) struct Level {
     /// Of the rows along a direction.
     pub(super) along: Vec<f64>,
     pub(super) gains: Vec<f64>,
+    /// [A r] on the free motions, then [R Q^T r], and R^T: the solution without a decomposition.
+    system: Matrix,
+    left: Elimination,
+    transposed: Matrix,
+    right: Elimination,
+    ordered: Vec<f64>,
 }
+
+/// Remainders of columns that are zero and that are not [-]: between them singular values decide.
+const CLEAR: RankGap = RankGap { zero: 1e-12, regular: 1e-4 };
 
 impl Level {
     pub(in crate::control) fn new(m: usize, n: usize) -> Self {
@@ -34,6 +43,11 @@ impl Level {
             residual: vec![0.0; m],
             along: vec![0.0; m],
             gains: vec![0.0; m.min(n)],
+            system: Matrix::zeros(m, n + 1),
+            left: Elimination::workspace(n),
+            transposed: Matrix::zeros(n, m.min(n)),
+            right: Elimination::workspace(m.min(n)),
+            ordered: vec![0.0; n],
         }
     }
 
@@ -64,6 +78,37 @@ impl Level {
         for k in 0..columns {
             self.remove_direction(basis.column(k));
         }
+    }
+
+    /// The least x that minimises |projected x - residual| where the rank is clear; false elsewhere.
+    pub(super) fn least_squares(&mut self, x: &mut [f64]) -> bool {
+        let (m, n) = (self.rows.rows(), self.rows.cols());
+        let Self { system, left, transposed, right, ordered, .. } = self;
+        let (entries, last) = system.as_mut_slice().split_at_mut(m * n);
+        entries.copy_from_slice(self.projected.as_slice());
+        last.copy_from_slice(&self.residual);
+        let gap = CLEAR.times(self.scale);
+        if !left.eliminate(system, n, gap) {
+            return false;
+        }
+        let rank = left.rank();
+        if rank == 0 {
+            x.fill(0.0);
+            return true;
+        }
+        for i in 0..rank {
+            let column = transposed.column_mut(i);
+            column[..i].fill(0.0);
+            column.iter_mut().enumerate().skip(i).for_each(|(j, t)| *t = system[(i, j)]);
+        }
+        if !right.eliminate(transposed, rank, gap) || right.rank() < rank {
+            return false;
+        }
+        right.least_solution(transposed, &system.column(n)[..rank], ordered);
+        for (value, &j) in ordered.iter().zip(left.order()) {
+            x[j] = *value;
+        }
+        true
     }
 
     /// `projected (1 - v v^T)`

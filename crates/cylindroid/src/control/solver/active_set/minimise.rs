@@ -60,11 +60,13 @@ impl ActiveSet {
                     return;
                 }
                 level.project(&self.basis, columns);
-                level.svd.decompose(&level.projected);
-                for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
-                    *gain = if s > precision.rank * scale { 1.0 / s } else { 0.0 };
+                if !level.least_squares(&mut self.direction) {
+                    level.svd.decompose_warm(&level.projected);
+                    for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
+                        *gain = if s > precision.rank * scale { 1.0 / s } else { 0.0 };
+                    }
+                    level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
                 }
-                level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
                 project_out(&self.basis, columns, &mut self.direction);
             }
             Objective::Damped(level, damping) => {
@@ -78,7 +80,7 @@ impl ActiveSet {
                     level.rows.mul_vec_into(&self.normal, &mut level.along);
                     level.residual.iter_mut().zip(&level.along).for_each(|(r, a)| *r += a);
                     level.project(&self.basis, columns);
-                    level.svd.decompose(&level.projected);
+                    level.svd.decompose_warm(&level.projected);
                     for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
                         *gain = s / (s * s + *damping);
                     }

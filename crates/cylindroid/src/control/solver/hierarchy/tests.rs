@@ -321,3 +321,44 @@ fn scaled_levels_keep_their_direction() {
     }
     assert!(straight == 2000 && compared > 300, "{straight}, {compared}");
 }
+
+/// A level that no inequality stops has the same solution without a decomposition, and leaves the
+/// same motions to the next.
+#[test]
+fn free_levels_are_those_of_the_active_set() {
+    let mut random = Random(29);
+    let (mut free, mut other) = (0, 0);
+    for _ in 0..4000 {
+        let problem = Problem::random(&mut random);
+        let mut by_rows = problem.active_set();
+        if !by_rows.start(&vec![0.0; problem.n]) {
+            continue;
+        }
+        let mut by_svd = by_rows.clone();
+        for (a, b) in &problem.levels {
+            let mut level = Level::new(a.rows(), problem.n);
+            level.rows = a.clone();
+            // Small enough to be within the bounds at times.
+            level.target = b.iter().map(|x| 0.03 * x).collect();
+            let mut same = level.clone();
+            if !by_rows.solve_freely(&mut level, 1e-3) {
+                other += 1;
+                by_rows.solve(&mut level, Precision::EXACT);
+            } else {
+                free += 1;
+            }
+            by_svd.solve(&mut same, Precision::EXACT);
+            for (x, y) in by_rows.point().iter().zip(by_svd.point()) {
+                assert!((x - y).abs() < 1e-9, "{:?} {:?}", by_rows.point(), by_svd.point());
+            }
+            problem.assert_feasible(by_rows.point(), "free");
+        }
+        let goal: Vec<f64> = (0..problem.n).map(|_| random.signed()).collect();
+        by_rows.approach(&goal, Precision::EXACT);
+        by_svd.approach(&goal, Precision::EXACT);
+        for (x, y) in by_rows.point().iter().zip(by_svd.point()) {
+            assert!((x - y).abs() < 1e-8, "{:?} {:?}", by_rows.point(), by_svd.point());
+        }
+    }
+    assert!(free > 300 && other > 3000, "{free} free, {other} others");
+}

@@ -92,7 +92,7 @@ impl Curved {
         for i in 0..n {
             self.curvature[(i, i)] += shift;
         }
-        self.eigen.decompose(&self.curvature);
+        self.eigen.decompose_warm(&self.curvature);
         self.stacked.as_mut_slice().fill(0.0);
         for i in 0..n {
             let root = ((self.eigen.value(i) - shift).max(0.0) + LEAST_DAMPING).sqrt();
