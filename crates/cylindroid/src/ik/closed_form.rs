@@ -35,6 +35,8 @@ pub(super) struct ClosedForm {
     pub(super) analytic: Analytic,
     /// The locked joint of seven, with the range of its values.
     locked: Option<(usize, [f64; 2])>,
+    /// Its limits.
+    limits: [f64; 2],
 }
 
 impl ClosedForm {
@@ -50,7 +52,11 @@ impl ClosedForm {
         let with_locked =
             |locked: &[usize]| Analytic::with_locked(mechanism, goal.end_effector, locked).ok();
         if free.len() != 7 {
-            return Some(Self { analytic: with_locked(&options.fixed)?, locked: None });
+            return Some(Self {
+                analytic: with_locked(&options.fixed)?,
+                locked: None,
+                limits: [0.0; 2],
+            });
         }
         let mut best: Option<(f64, Self)> = None;
         for (&i, moves) in free.iter().zip(self_motion(mechanism, chain.clone(), &free)) {
@@ -63,7 +69,8 @@ impl ClosedForm {
                 let limits = mechanism.coordinates()[c].limits;
                 let upper = limits.upper.min(PI);
                 let range = [limits.lower.max(upper - 2.0 * PI), upper];
-                best = Some((value, Self { analytic, locked: Some((c, range)) }));
+                let limits = [limits.lower, limits.upper];
+                best = Some((value, Self { analytic, locked: Some((c, range)), limits }));
             }
         }
         best.map(|(_, formulas)| formulas)
@@ -72,6 +79,20 @@ impl ClosedForm {
     /// True if it gives all solutions.
     pub(super) fn are_all(&self) -> bool {
         self.locked.is_none()
+    }
+
+    /// The locked joint of seven with the range of values that its limits permit, a full turn at
+    /// most, about its initial value.
+    pub(super) fn range_about(&self, start: &[f64]) -> Option<(usize, [f64; 2])> {
+        let (c, _) = self.locked?;
+        let [lower, upper] = self.limits;
+        let range = if upper - lower <= 2.0 * PI {
+            [lower, upper]
+        } else {
+            let lower = (start[c] - PI).max(lower).min(upper - 2.0 * PI);
+            [lower, lower + 2.0 * PI]
+        };
+        Some((c, range))
     }
 
     /// Solutions; for seven joints those of the i-th sample of the locked joint, which is written

@@ -149,6 +149,9 @@ pub struct Goal {
     pub target: Pose,
     /// The components of the task.
     pub task: Task,
+    /// Factor of its errors, against those of other goals, where not all can be reached; a solution
+    /// reaches all of them in any case.
+    pub weight: f64,
 }
 
 impl Goal {
@@ -168,7 +171,7 @@ impl Goal {
     /// ```
     #[must_use]
     pub fn pose(end_effector: impl Into<EndEffector>, target: Pose) -> Self {
-        Self { end_effector: end_effector.into(), target, task: Task::POSE }
+        Self { end_effector: end_effector.into(), target, task: Task::POSE, weight: 1.0 }
     }
 
     /// Rejects frames of other mechanisms and non-finite values.
@@ -182,6 +185,7 @@ impl Goal {
         if !self.target.is_finite() {
             return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
         }
+        Error::check_positive("weight of the goal", self.weight)?;
         self.task.check()
     }
 }

@@ -24,9 +24,6 @@ use crate::linalg::Matrix;
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::clamp;
 
-/// Iterations towards the initial guess, and their damping relative to the squared norm of A.
-const APPROACH_ITERATIONS: usize = 60;
-const APPROACH_DAMPING: f64 = 1e-9;
 /// A goal with its chain.
 #[derive(Debug, Clone)]
 struct Part {
@@ -53,15 +50,15 @@ pub(super) struct Problem {
     pub(super) turns: Vec<bool>,
     /// True if all are angles and lengths.
     simple: bool,
-    m: usize,
-    a: Vec<f64>,
+    pub(super) m: usize,
+    pub(super) a: Vec<f64>,
     e: Vec<f64>,
-    d: Vec<f64>,
+    pub(super) d: Vec<f64>,
     /// Coordinates that keep their values, and those that a step clamps at a limit as well.
     pub(super) fixed: Vec<bool>,
-    clamped: Vec<bool>,
+    pub(super) clamped: Vec<bool>,
     rates: Vec<f64>,
-    damped: Damped,
+    pub(super) damped: Damped,
 }
 
 impl Problem {
@@ -73,12 +70,13 @@ impl Problem {
             chains.iter().flat_map(|c| c.coordinates().iter().copied()).collect();
         coordinates.sort_unstable();
         coordinates.dedup();
+        let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
         let parts: Vec<Part> = goals
             .iter()
             .zip(chains)
             .map(|(goal, chain)| {
-                let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
-                let rows = (0..6).filter(|&i| goal.task.components[i]).map(|i| (i, scale(i)));
+                let rows = (0..6).filter(|&i| goal.task.components[i]);
+                let rows = rows.map(|i| (i, goal.weight * scale(i)));
                 let place = |c: &usize| coordinates.partition_point(|x| x < c);
                 Part {
                     goal: *goal,
@@ -125,7 +123,10 @@ impl Problem {
                         .to_owned(),
                 });
             }
-            part.goal.target = goal.target;
+            for (_, scale) in &mut part.rows {
+                *scale *= goal.weight / part.goal.weight;
+            }
+            (part.goal.target, part.goal.weight) = (goal.target, goal.weight);
         }
         Ok(())
     }
@@ -150,7 +151,7 @@ impl Problem {
     }
 
     /// Computes A at the configuration evaluated last.
-    fn load_jacobian(&mut self) {
+    pub(super) fn load_jacobian(&mut self) {
         let m = self.m;
         if self.parts.len() > 1 {
             self.a.fill(0.0);
@@ -189,7 +190,7 @@ impl Problem {
     }
 
     /// Clamps joints at a limit that the step would leave; true if there were any.
-    fn clamp_at_limits(&mut self, q: &[f64]) -> bool {
+    pub(super) fn clamp_at_limits(&mut self, q: &[f64]) -> bool {
         let mut any = false;
         for (i, &c) in self.coordinates.iter().enumerate() {
             let out = (q[c] <= self.lower[i] && self.d[i] < 0.0)
@@ -202,7 +203,7 @@ impl Problem {
         any
     }
 
-    fn advance(&mut self, q: &mut [f64]) {
+    pub(super) fn advance(&mut self, q: &mut [f64]) {
         let most = self.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
         let cut = if most > MAX_STEP { MAX_STEP / most } else { 1.0 };
         if self.simple {
@@ -309,61 +310,6 @@ impl Problem {
             self.evaluate(q);
         }
         self.evaluate(q)
-    }
-
-    /// Moves `q` along the solutions of the goals towards `start`, as close as possible.
-    pub(super) fn approach_start(&mut self, q: &mut [f64], start: &[f64], options: &IkOptions) {
-        let (mut next, mut share) = (q.to_vec(), 0.5);
-        let distance = |coordinates: &[usize], q: &[f64]| -> f64 {
-            coordinates.iter().map(|&c| (q[c] - start[c]).powi(2)).sum()
-        };
-        let mut far = distance(&self.coordinates, q);
-        for _ in 0..APPROACH_ITERATIONS {
-            self.evaluate(q);
-            self.load_jacobian();
-            let size = self.a.iter().map(|x| x * x).sum::<f64>();
-            // Null-space projection d - A+ A d, with joints clamped at a limit that it would leave.
-            self.clamped.copy_from_slice(&self.fixed);
-            let desired: Vec<f64> = self.coordinates.iter().map(|&c| start[c] - q[c]).collect();
-            for _ in 0..=self.coordinates.len() {
-                let free = |(w, h): (&f64, &bool)| if *h { 0.0 } else { *w };
-                let free_part: Vec<f64> = desired.iter().zip(&self.clamped).map(free).collect();
-                let done: Vec<f64> = (0..self.m)
-                    .map(|i| {
-                        (0..free_part.len()).map(|j| self.a[j * self.m + i] * free_part[j]).sum()
-                    })
-                    .collect();
-                let damping = APPROACH_DAMPING * size;
-                let problem =
-                    DampedProblem { a: &self.a, e: &done, clamped: &self.clamped, damping };
-                if !self.damped.solve(problem, &mut self.d) {
-                    return;
-                }
-                self.d.iter_mut().zip(&free_part).for_each(|(d, w)| *d = w - *d);
-                if !self.clamp_at_limits(q) {
-                    break;
-                }
-            }
-            self.d.iter_mut().for_each(|d| *d *= share);
-            next.copy_from_slice(q);
-            self.advance(&mut next);
-            let (errors, _) = self.run(&mut next, options, 8);
-            let then = distance(&self.coordinates, &next);
-            if is_reached(errors, options) && then < far {
-                let little = then > far * (1.0 - 1e-9);
-                q.copy_from_slice(&next);
-                far = then;
-                share = (2.0 * share).min(1.0);
-                if little {
-                    return;
-                }
-            } else {
-                share *= 0.25;
-                if share < 1e-3 {
-                    return;
-                }
-            }
-        }
     }
 }
 

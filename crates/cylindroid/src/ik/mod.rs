@@ -19,20 +19,27 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
+mod acceptance;
 mod analytic;
+mod avoidance;
 mod closed_form;
 mod convergence;
 mod damped_step;
 mod goal;
 mod levenberg_marquardt;
+mod miss;
+mod nearest;
 mod options;
 mod parallel_restarts;
+mod reason;
+mod self_motion;
 mod solution;
 mod solve;
 
 pub use analytic::{Analytic, AnalyticSolution, AnalyticSolutions, ArmGeometry, NotSolvable};
 pub use goal::{Goal, Task};
 pub use options::{Budget, IkOptions};
+pub use reason::MissReason;
 pub use solution::{FoundBy, Solution};
 pub(crate) use solve::ITERATIONS_PER_RESTART;
 pub use solve::{Solver, solve, solve_distinct};

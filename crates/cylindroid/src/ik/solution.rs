@@ -1,6 +1,9 @@
 //! The result of inverse kinematics: configuration, errors, method.
 //!
-//! Checked  tests/it/ik.rs
+//! Checked  tests/it/ik.rs, tests/it/ik_misses.rs
+
+use super::convergence::Errors;
+use super::reason::MissReason;
 
 /// The method that found a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,4 +46,15 @@ pub struct Solution {
     /// Proof that no solution exists: the distance of the target from the first joint, and the
     /// length of the chain from there (m).
     pub out_of_reach: Option<(f64, f64)>,
+    /// The reason why no solution was found; `None` with success.
+    pub reason: Option<MissReason>,
+}
+
+/// A solution, with its distance from the initial guess.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub(super) distance: f64,
+    pub(super) q: Vec<f64>,
+    pub(super) errors: Errors,
+    pub(super) found_by: FoundBy,
 }

@@ -16,13 +16,15 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use super::analytic::Analytic;
+use super::avoidance::Avoidance;
 use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES};
 use super::convergence::{Errors, is_reached};
 use super::goal::{Goal, check_all};
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
-use super::solution::{FoundBy, Solution};
+use super::self_motion::Descent;
+use super::solution::{Candidate, FoundBy, Solution};
 use crate::error::Result;
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
@@ -30,14 +32,13 @@ use crate::tolerance;
 
 /// Iteration limit of one restart.
 pub(crate) const ITERATIONS_PER_RESTART: usize = 60;
-/// Iterations that refine the closest failure.
-const REFINEMENT_ITERATIONS: usize = 200;
 /// Restarts after the first solution if the closest one is requested.
 const MAX_RESTARTS_AFTER_FIRST: usize = 48;
+/// Restarts without a solution before all branches of the closed form of a redundant arm are
+/// sampled.
+const RESTARTS_BEFORE_SAMPLES: usize = 64;
 /// Largest perturbation of the initial guess for every second of them [rad, lengths].
 const PERTURBATION: f64 = 1.0;
-/// Solutions whose coordinates differ by less than this, up to full turns, are one [rad, lengths].
-const SAME_CONFIGURATION: f64 = 1e-3;
 
 /// A solver of inverse kinematics for one mechanism and its end effectors, to be reused in a loop:
 /// restarts do not allocate; further calls allocate only the solutions and the workspace for the
@@ -63,19 +64,12 @@ const SAME_CONFIGURATION: f64 = 1e-3;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Solver {
-    problem: Problem,
-    formulas: Option<ClosedForm>,
-    options: IkOptions,
-    start: Vec<f64>,
-}
-
-/// A solution, with its distance from the initial guess.
-#[derive(Debug, Clone)]
-struct Candidate {
-    distance: f64,
-    q: Vec<f64>,
-    errors: Errors,
-    found_by: FoundBy,
+    pub(super) problem: Problem,
+    pub(super) formulas: Option<ClosedForm>,
+    pub(super) options: IkOptions,
+    pub(super) start: Vec<f64>,
+    pub(super) descent: Descent,
+    pub(super) avoidance: Option<Avoidance>,
 }
 
 /// Solutions that remain after the closed form.
@@ -83,6 +77,8 @@ struct Candidate {
 enum Remaining {
     /// Further solutions may exist.
     Possible,
+    /// The samples of the closed form miss none but short branches.
+    Unlikely,
     /// None, up to tolerances: there is no solution, or all were found.
     None,
 }
@@ -146,7 +142,8 @@ impl Solver {
         let mut start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
         problem.clamp(&mut start);
         let formulas = ClosedForm::of(mechanism, goals, options);
-        Ok(Self { problem, formulas, options: options.clone(), start })
+        let descent = Descent::new(&problem);
+        Ok(Self { problem, formulas, options: options.clone(), start, descent, avoidance: None })
     }
 
     /// The closed form used by this solver, if any; of seven joints it locks one, whose value is
@@ -217,7 +214,7 @@ impl Solver {
     }
 
     /// Solutions, the closest to the initial guess first, or one failure.
-    fn search(
+    pub(super) fn search(
         &mut self,
         goals: &[Goal],
         after_first: usize,
@@ -226,32 +223,41 @@ impl Solver {
         check_all(&self.problem.mechanism, goals)?;
         self.problem.set_goals(goals)?;
         let out_of_reach = self.problem.out_of_reach();
+        if let Some(avoidance) = &mut self.avoidance {
+            avoidance.best = None;
+        }
+        // The closest solution alone: descents of others may end early.
+        let nearest = self.options.nearest && after_first < usize::MAX;
         let begin = Instant::now();
         let mut random = self.options.seed;
         let (mut iterations, mut since_first) = (0, 0);
         let mut solutions: Vec<Candidate> = Vec::new();
         let mut best: Option<(Vec<f64>, Errors)> = None;
-        let (left, mut attempts) = self.closed_form_candidates(goals, &enough, &mut solutions)?;
+        let (mut left, mut attempts) =
+            self.closed_form_candidates(goals, &enough, nearest, &mut solutions)?;
         iterations += attempts;
         let first = attempts;
         let mut q = self.start.clone();
         let budget = self.options.budget;
         let in_time = |begin: Instant| budget.time.is_none_or(|most| begin.elapsed() < most);
-        let found_all = !solutions.is_empty() && left == Remaining::None;
+        let found_all = !solutions.is_empty() && left != Remaining::Possible;
         while !(found_all || enough(solutions.len()) && !solutions.is_empty()) {
             let most = budget.iterations.saturating_sub(iterations);
             let begun = attempts - first;
             let all = !enough(solutions.len() + 1);
-            let mut tell = |solver: &mut Self, q: &mut [f64], errors: Errors| {
+            let mut tell = |solver: &mut Self, q: &mut [f64], errors: Errors| -> Result<()> {
                 if is_reached(errors, &solver.options) {
                     solver.wrap_angles(q);
-                    solver.approach_start(q);
-                    solver.add(&mut solutions, q, FoundBy::Numerical);
+                    let distances = solutions.iter().map(|s| s.distance);
+                    let best = distances.fold(f64::INFINITY, f64::min);
+                    solver.approach_start(q, if nearest { best * best } else { f64::INFINITY });
+                    solver.add(&mut solutions, q, FoundBy::Numerical)?;
                 } else if errors.squared.is_finite()
                     && best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared)
                 {
                     best = Some((q.to_vec(), errors));
                 }
+                Ok(())
             };
             let (of_each, steps) = match self.next_start(begun, most, &mut q, &mut random) {
                 Some(mut restarts) => {
@@ -270,14 +276,14 @@ impl Solver {
                             (errors, _) =
                                 self.problem.run(&mut q, &self.options, ITERATIONS_PER_RESTART);
                         }
-                        tell(self, &mut q, errors);
+                        tell(self, &mut q, errors)?;
                     }
                     (LANES, steps)
                 }
                 None => {
                     let (errors, steps) =
                         self.problem.run(&mut q, &self.options, most.min(ITERATIONS_PER_RESTART));
-                    tell(self, &mut q, errors);
+                    tell(self, &mut q, errors)?;
                     (1, steps)
                 }
             };
@@ -285,8 +291,22 @@ impl Solver {
             iterations += steps.max(of_each);
             since_first += if solutions.is_empty() { 0 } else { of_each };
             let over = iterations >= budget.iterations || !in_time(begin);
-            let nowhere = out_of_reach.is_some() || left == Remaining::None;
-            let hopeless = nowhere && attempts >= first + MAX_RESTARTS_AFTER_FIRST;
+            let tried = attempts - first;
+            if left == Remaining::Possible
+                && solutions.is_empty()
+                && tried >= RESTARTS_BEFORE_SAMPLES
+            {
+                let most = budget.iterations.saturating_sub(iterations);
+                let calls = self.sample_branches(goals, most, &mut solutions)?;
+                left = if calls > 0 { Remaining::Unlikely } else { left };
+                iterations += calls;
+            }
+            let hopeless = match left {
+                _ if out_of_reach.is_some() => tried >= MAX_RESTARTS_AFTER_FIRST,
+                Remaining::None => tried >= MAX_RESTARTS_AFTER_FIRST,
+                Remaining::Unlikely => tried >= budget.iterations / ITERATIONS_PER_RESTART,
+                Remaining::Possible => false,
+            };
             if enough(solutions.len()) || since_first > after_first || over || hopeless {
                 break;
             }
@@ -301,17 +321,12 @@ impl Solver {
             restarts: attempts,
             // A distance within the tolerance is reached.
             out_of_reach: out_of_reach.filter(|_| !success),
+            reason: None,
         };
         if solutions.is_empty() {
-            let (mut q, _) =
-                best.unwrap_or_else(|| (self.start.clone(), self.problem.evaluate(&self.start)));
-            let errors = self.problem.refine(&mut q, REFINEMENT_ITERATIONS);
-            if is_reached(errors, &self.options) {
-                self.add(&mut solutions, &q, FoundBy::Numerical);
-            }
+            let (miss, reason) = self.closest_miss(best, out_of_reach, &mut solutions)?;
             if solutions.is_empty() {
-                let nearest = Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical };
-                return Ok(vec![solution(false, nearest)]);
+                return Ok(vec![Solution { reason: Some(reason), ..solution(false, miss) }]);
             }
         }
         solutions.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -323,18 +338,25 @@ impl Solver {
         &mut self,
         goals: &[Goal],
         enough: &impl Fn(usize) -> bool,
+        nearest: bool,
         solutions: &mut Vec<Candidate>,
     ) -> Result<(Remaining, usize)> {
+        if nearest {
+            let most = self.options.budget.iterations;
+            let calls = self.sample_branches(goals, most, solutions)?;
+            if calls > 0 {
+                return Ok((Remaining::Unlikely, calls));
+            }
+        }
         let (Some(mut formulas), [goal]) = (self.formulas.take(), goals) else {
             return Ok((Remaining::Possible, 0));
         };
         let (mut left, mut calls) = (Remaining::Possible, 0);
-        // For the closest solution of a redundant arm, numerical descent is better than sampling
-        // one joint.
-        let most = match (formulas.are_all(), self.options.nearest) {
-            (true, _) => 1,
-            (false, true) => 0,
-            (false, false) => REDUNDANCY_SAMPLES.min(self.options.budget.iterations - 1),
+        let most = match formulas.are_all() {
+            true => 1,
+            // Every solution moves to the closest one nearby: samples would lead to the same.
+            false if self.options.nearest => 0,
+            false => REDUNDANCY_SAMPLES.min(self.options.budget.iterations - 1),
         };
         let mut start = self.start.clone();
         while calls < most && (calls == 0 || !enough(solutions.len())) {
@@ -358,9 +380,9 @@ impl Solver {
                     q[c] = angle;
                 }
                 if candidate.free != [false; 6] {
-                    self.approach_start(&mut q);
+                    self.approach_start(&mut q, f64::INFINITY);
                 }
-                self.add(solutions, &q, FoundBy::Analytic);
+                self.add(solutions, &mut q, FoundBy::Analytic)?;
             }
             if formulas.are_all() && formulas.analytic.is_exact() && !candidates.is_open() {
                 left = Remaining::None;
@@ -408,27 +430,8 @@ impl Solver {
         restarts.iter().map(|r| r.steps).sum()
     }
 
-    /// Adds a solution unless it is already known. The only way to success: all coordinates finite
-    /// and within their limits, all errors within tolerance.
-    fn add(&mut self, solutions: &mut Vec<Candidate>, q: &[f64], found_by: FoundBy) {
-        let within = self.problem.mechanism.outside_limits(q).next().is_none();
-        if !within || !q.iter().all(|x| x.is_finite()) {
-            return;
-        }
-        let errors = self.problem.evaluate(q);
-        let known = solutions.iter().any(|other| self.is_same(&other.q, q));
-        if !known && is_reached(errors, &self.options) {
-            solutions.push(Candidate {
-                distance: self.distance(q),
-                q: q.to_vec(),
-                errors,
-                found_by,
-            });
-        }
-    }
-
     /// A random configuration within the limits, anywhere or near the initial guess.
-    fn sample_configuration(&self, q: &mut [f64], near: bool, random: &mut u64) {
+    pub(super) fn sample_configuration(&self, q: &mut [f64], near: bool, random: &mut u64) {
         let p = &self.problem;
         for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
             let bounded = p.upper[i] - p.lower[i] <= tolerance::WIDEST_RANGE;
@@ -439,44 +442,5 @@ impl Solver {
             // Limits outside the sampling range leave one end of it.
             q[c] = clamp(lower + (upper - lower) * uniform(random), p.lower[i], p.upper[i]);
         }
-    }
-
-    /// If the closest solution is requested: moves along the self-motion towards the initial guess.
-    fn approach_start(&mut self, q: &mut [f64]) {
-        if self.options.nearest {
-            self.problem.approach_start(q, &self.start, &self.options);
-        }
-    }
-
-    /// If the closest solution is requested: full turns of joints that permit them, towards the
-    /// initial guess.
-    fn wrap_angles(&mut self, q: &mut [f64]) {
-        if !self.options.nearest {
-            return;
-        }
-        for i in 0..self.problem.coordinates.len() {
-            let c = self.problem.coordinates[i];
-            let turns = ((self.start[c] - q[c]) / (2.0 * PI)).round();
-            let turned = q[c] + 2.0 * PI * turns;
-            let within = (self.problem.lower[i]..=self.problem.upper[i]).contains(&turned);
-            let can = self.problem.turns[i] && !self.problem.fixed[i] && within;
-            if can && turns != 0.0 {
-                q[c] = turned;
-            }
-        }
-    }
-
-    fn distance(&self, q: &[f64]) -> f64 {
-        let far = |&c: &usize| (q[c] - self.start[c]).powi(2);
-        self.problem.coordinates.iter().map(far).sum::<f64>().sqrt()
-    }
-
-    fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
-        let mut all = self.problem.coordinates.iter().zip(&self.problem.turns);
-        all.all(|(&c, turns)| {
-            let apart = a[c] - b[c];
-            let turns = if *turns { (apart / (2.0 * PI)).round() } else { 0.0 };
-            (apart - 2.0 * PI * turns).abs() < SAME_CONFIGURATION
-        })
     }
 }

@@ -13,6 +13,7 @@ mod closure;
 mod graph;
 mod hyperbolic;
 mod ik;
+mod ik_misses;
 mod ik_wide_limits;
 mod inverse;
 mod inverse_batch;

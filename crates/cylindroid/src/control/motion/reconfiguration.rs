@@ -73,7 +73,7 @@ pub fn find_reachable_configuration(
         budget: Budget { iterations: ITERATIONS_PER_RESTART * max_restarts.max(1), time: None },
         length: Some(options.length),
     };
-    let goal = Goal { end_effector: options.end_effector, target, task: options.task };
+    let goal = Goal { end_effector: options.end_effector, target, task: options.task, weight: 1.0 };
     let found = solve(mechanism, &[goal], &ik)?;
     Ok(found.success.then_some(Reconfiguration { q: found.q, restarts: found.restarts }))
 }

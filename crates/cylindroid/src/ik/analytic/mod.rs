@@ -14,6 +14,7 @@
 //! Checked  tests/it/analytic/
 
 mod geometry;
+mod joints;
 mod pieper;
 mod subproblems;
 
@@ -21,16 +22,16 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::ops::Deref;
 
-use self::geometry::{ArmParameters, Axes, Three};
+use self::geometry::{ArmParameters, Three};
+use self::joints::{are_revolute, axes};
 use self::pieper::Target;
 use self::subproblems::Angle;
 use super::damped_step::{Damped, DampedProblem};
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::Matrix;
-use crate::model::{Mechanism, NodeKind};
+use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
-use crate::screws::Screw;
 use crate::spatial::{Pose, Rotation, Twist};
 use crate::tolerance::{
     ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED, ANALYTIC_SAME,
@@ -248,6 +249,17 @@ impl Analytic {
     /// # Errors
     /// A `start` of the wrong size, non-finite values.
     pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<AnalyticSolutions> {
+        self.solve_with(target, start, |_, _| {})
+    }
+
+    /// The same; candidates that only the limits exclude go to `excluded`, clamped to them, with
+    /// their largest displacement (rad).
+    pub(super) fn solve_with(
+        &mut self,
+        target: Pose,
+        start: &[f64],
+        mut excluded: impl FnMut([f64; 6], f64),
+    ) -> Result<AnalyticSolutions> {
         self.check(target, start)?;
         if self.locked.iter().any(|&c| self.q[c] != start[c]) {
             self.lock(start);
@@ -287,7 +299,13 @@ impl Analytic {
                 free[place] = turn.free;
             }
             solutions.open |= free != [false; 6];
-            let Some(solution) = self.confirmed(q, free, &target, &near) else { return false };
+            let Some(solution) = self.confirmed(q, free, &target, &near) else {
+                let (clamped, most) = clamped(q, &near, (&self.lower, &self.upper));
+                if most > 0.0 {
+                    excluded(clamped, most);
+                }
+                return false;
+            };
             solutions.insert(solution);
             true
         };
@@ -460,41 +478,22 @@ fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
     (q >= lower - ANALYTIC_AT_LIMIT && q <= upper + ANALYTIC_AT_LIMIT).then_some(q)
 }
 
-/// True if each coordinate rotates exactly one revolute joint between the ground and the end
-/// effector.
-fn are_revolute(
-    mechanism: &Mechanism,
-    end_effector: EndEffector,
-    coordinates: &[usize; 6],
-) -> bool {
-    let mut slot = mechanism.frame_of(end_effector.frame).slot;
-    let mut revolute = 0;
-    while slot > 0 {
-        let node = &mechanism.nodes()[slot - 1];
-        if coordinates.contains(&node.coordinate) && node.kind.dof() > 0 {
-            if node.kind != NodeKind::Revolute || (node.multiplier, node.offset) != (1.0, 0.0) {
-                return false;
-            }
-            revolute += 1;
-        }
-        slot = node.parent;
+/// The angles clamped to the limits, each by as little as full turns permit, and the largest
+/// displacement.
+fn clamped(
+    angles: [f64; 6],
+    near: &[f64; 6],
+    (lower, upper): (&[f64; 6], &[f64; 6]),
+) -> ([f64; 6], f64) {
+    let (mut q, mut most) = (angles, 0.0_f64);
+    for i in 0..6 {
+        q[i] = turned(angles[i], near[i], lower[i], upper[i]).unwrap_or_else(|| {
+            let turns = ((0.5 * (lower[i] + upper[i]) - angles[i]) / TAU).round();
+            let turned = angles[i] + TAU * turns;
+            let q = clamp(turned, lower[i], upper[i]);
+            most = most.max((q - turned).abs());
+            q
+        });
     }
-    revolute == 6
-}
-
-/// The axes with the six coordinates at zero and the others as in `q`.
-fn axes(
-    chain: &mut Chain,
-    coordinates: &[usize; 6],
-    q: &[f64],
-    jacobian: &mut Matrix,
-) -> Option<Axes> {
-    let tool = chain.set(q).translation;
-    chain.jacobian_into(ReferenceFrame::World, jacobian);
-    let mut lines = [crate::screws::Line { point: tool, direction: crate::spatial::Vec3::Z }; 6];
-    for (line, c) in lines.iter_mut().zip(coordinates) {
-        let column = jacobian.column(chain.coordinates().partition_point(|x| x < c));
-        *line = Screw::of(Twist::from_array(column.try_into().ok()?))?.axis;
-    }
-    Some(Axes { lines, tool })
+    (q, most)
 }

@@ -1,0 +1,100 @@
+//! The acceptance of solutions: within limits and tolerances, apart from other bodies, new.
+//!
+//! Checked  tests/it/ik.rs, tests/it/ik_misses.rs
+
+use std::f64::consts::PI;
+
+use super::avoidance::Avoidance;
+use super::convergence::is_reached;
+use super::solution::{Candidate, FoundBy};
+use super::solve::Solver;
+use crate::collision::CollisionModel;
+use crate::error::Result;
+
+/// Solutions whose coordinates differ by less than this, up to full turns, are one [rad, lengths].
+const SAME_CONFIGURATION: f64 = 1e-3;
+
+impl Solver {
+    /// Accepts only solutions at which all pairs of bodies that `model` watches are at least `gap`
+    /// apart (m): of the links with each other and with obstacles. A redundant mechanism moves
+    /// along its self-motion to make room; the search goes on from other initial guesses until it
+    /// finds a solution or ends. [`IkOptions::nearest`](super::IkOptions::nearest) then gives the
+    /// closest one found.
+    ///
+    /// ```
+    /// use cylindroid::collision::{CollisionModel, CollisionOptions};
+    /// use cylindroid::ik::{Goal, IkOptions, MissReason, Solver};
+    /// use cylindroid::model::Geometry;
+    ///
+    /// let robot = cylindroid::load("panda")?;
+    /// let target = robot.state(robot.home())?.pose(robot.tool());
+    /// let goals = [Goal::pose(robot.tool(), target)];
+    /// let mut model = CollisionModel::new(&robot, &CollisionOptions::default())?;
+    /// model.add_obstacle("ball", &Geometry::Sphere { radius: 0.05 }, target)?;
+    /// let mut solver = Solver::new(&robot, &goals, &IkOptions::default())?;
+    /// solver.avoid(model, 0.01)?;
+    /// let found = solver.solve(&goals)?;
+    /// # let has_bodies = !robot.links().iter().all(|l| l.collisions.is_empty());
+    /// # if has_bodies {
+    /// // The hand is inside the ball in every solution.
+    /// assert!(matches!(found.reason, Some(MissReason::Collision { .. })));
+    /// # }
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The shapes of another mechanism, a negative or non-finite gap.
+    pub fn avoid(&mut self, model: CollisionModel, gap: f64) -> Result<()> {
+        self.avoidance = Some(Avoidance::new(&self.problem.mechanism, model, gap)?);
+        Ok(())
+    }
+
+    /// The bodies of [`Solver::avoid`]: their obstacles may move between calls.
+    #[must_use]
+    pub fn collision_model_mut(&mut self) -> Option<&mut CollisionModel> {
+        self.avoidance.as_mut().map(|avoidance| &mut avoidance.model)
+    }
+
+    /// Adds a solution unless it is already known; false if it is none. The only way to success:
+    /// all coordinates finite and within their limits, all errors within tolerance, all bodies
+    /// apart.
+    pub(super) fn add(
+        &mut self,
+        solutions: &mut Vec<Candidate>,
+        q: &mut [f64],
+        found_by: FoundBy,
+    ) -> Result<bool> {
+        if !self.is_solution(q) {
+            return Ok(false);
+        }
+        if let Some(mut avoidance) = self.avoidance.take() {
+            let free = avoidance.make_free(&mut self.problem, &mut self.descent, q, &self.options);
+            self.avoidance = Some(avoidance);
+            if !free? || !self.is_solution(q) {
+                return Ok(false);
+            }
+        }
+        let errors = self.problem.evaluate(q);
+        if !solutions.iter().any(|other| self.is_same(&other.q, q)) {
+            let distance = self.distance(q);
+            solutions.push(Candidate { distance, q: q.to_vec(), errors, found_by });
+        }
+        Ok(true)
+    }
+
+    fn is_solution(&mut self, q: &[f64]) -> bool {
+        let within = self.problem.mechanism.outside_limits(q).next().is_none();
+        within
+            && q.iter().all(|x| x.is_finite())
+            && is_reached(self.problem.evaluate(q), &self.options)
+    }
+
+    fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
+        let mut all = self.problem.coordinates.iter().zip(&self.problem.turns);
+        all.all(|(&c, turns)| {
+            let apart = a[c] - b[c];
+            let turns = if *turns { (apart / (2.0 * PI)).round() } else { 0.0 };
+            (apart - 2.0 * PI * turns).abs() < SAME_CONFIGURATION
+        })
+    }
+}

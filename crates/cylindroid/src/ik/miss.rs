@@ -1,0 +1,103 @@
+//! The reason why inverse kinematics found no solution.
+//!
+//! Method   in this order: the distance of the target exceeds the length of the chain, which proves
+//!          it; solutions were found, but bodies are too close in all of them; without position
+//!          limits there is a solution, from the closest configuration or a few random ones; none
+//!          of these
+//! Checked  tests/it/ik_misses.rs
+
+use std::f64::consts::PI;
+
+use super::convergence::{Errors, is_reached};
+use super::reason::MissReason;
+use super::solution::{Candidate, FoundBy};
+use super::solve::{ITERATIONS_PER_RESTART, Solver};
+use crate::error::Result;
+
+/// Iterations that refine the closest failure.
+const REFINEMENT_ITERATIONS: usize = 200;
+/// Random initial guesses of the search without limits.
+const RESTARTS: u64 = 8;
+
+impl Solver {
+    /// The failure to return, with its reason, from the closest configuration; a solution after all
+    /// is added.
+    pub(super) fn closest_miss(
+        &mut self,
+        best: Option<(Vec<f64>, Errors)>,
+        out_of_reach: Option<(f64, f64)>,
+        solutions: &mut Vec<Candidate>,
+    ) -> Result<(Candidate, MissReason)> {
+        let miss = |q: Vec<f64>, errors: Errors, reason: MissReason| {
+            (Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical }, reason)
+        };
+        let mut q = best.map_or_else(|| self.start.clone(), |(q, _)| q);
+        let mut errors = self.problem.refine(&mut q, REFINEMENT_ITERATIONS);
+        if is_reached(errors, &self.options) {
+            self.add(solutions, &mut q, FoundBy::Numerical)?;
+        }
+        if let Some((q, _, reason)) = self.avoidance.as_mut().and_then(|a| a.best.take()) {
+            let errors = self.problem.evaluate(&q);
+            return Ok(miss(q, errors, reason));
+        }
+        if let Some((distance, length)) = out_of_reach {
+            return Ok(miss(q, errors, MissReason::OutOfReach { distance, length }));
+        }
+        let beyond = self.solve_without_limits(&q);
+        let reason = self.reason_by_limits(beyond.as_deref());
+        if let (Some(mut beyond), MissReason::NotProven) = (beyond, &reason) {
+            self.add(solutions, &mut beyond, FoundBy::Numerical)?;
+        }
+        errors = self.problem.evaluate(&q);
+        Ok(miss(q, errors, reason))
+    }
+
+    /// A configuration that reaches the goals with or without position limits: from `q`, then from
+    /// random configurations.
+    fn solve_without_limits(&mut self, q: &[f64]) -> Option<Vec<f64>> {
+        let n = self.problem.coordinates.len();
+        let limits = (self.problem.lower.clone(), self.problem.upper.clone());
+        let mut found = None;
+        for restart in 0..=RESTARTS {
+            let mut next = q.to_vec();
+            if restart > 0 {
+                let mut random = self.options.seed.wrapping_add(restart);
+                self.sample_configuration(&mut next, false, &mut random);
+            }
+            self.problem.lower = vec![f64::NEG_INFINITY; n];
+            self.problem.upper = vec![f64::INFINITY; n];
+            let (errors, _) = self.problem.run(&mut next, &self.options, ITERATIONS_PER_RESTART);
+            (self.problem.lower, self.problem.upper) = limits.clone();
+            if is_reached(errors, &self.options) && next.iter().all(|x| x.is_finite()) {
+                self.turn_towards_limits(&mut next);
+                found = Some(next);
+                break;
+            }
+        }
+        found
+    }
+
+    /// Full turns of joints that permit them, towards the middle of their range.
+    fn turn_towards_limits(&self, q: &mut [f64]) {
+        let p = &self.problem;
+        for (i, &c) in p.coordinates.iter().enumerate() {
+            let outside = q[c] < p.lower[i] || q[c] > p.upper[i];
+            let middle = 0.5 * (p.lower[i] + p.upper[i]);
+            if outside && p.turns[i] && !p.fixed[i] && middle.is_finite() {
+                q[c] += 2.0 * PI * ((middle - q[c]) / (2.0 * PI)).round();
+            }
+        }
+    }
+
+    /// The reason for a miss that neither distance nor collisions explain; `beyond` reaches the
+    /// goals without limits.
+    fn reason_by_limits(&self, beyond: Option<&[f64]>) -> MissReason {
+        let mechanism = &self.problem.mechanism;
+        let Some(beyond) = beyond else { return MissReason::NotProven };
+        let joints: Vec<String> = mechanism
+            .outside_limits(beyond)
+            .map(|c| mechanism.coordinates()[c].name.clone())
+            .collect();
+        if joints.is_empty() { MissReason::NotProven } else { MissReason::Limits { joints } }
+    }
+}

@@ -1,0 +1,181 @@
+//! Descent along the self-motion of a redundant mechanism: from one solution to the closest one
+//! that is connected with it.
+//!
+//! Formula  d = (1 - A+ A) (start - q), joints clamped at a limit that d would leave;
+//!          q <- q + s d, then back to the goals by Levenberg-Marquardt steps;
+//!          s = |dq|^2 / <dq, dd> with the changes of q and -d in the last step
+//! Shapes   A: m x n by columns, d: n
+//! Valid    any tree; a local minimum of the distance to the initial guess. Every step decreases
+//!          the distance
+//! Why so   with one redundant joint s is the step of the secant method: a handful of steps, where
+//!          a projected gradient takes thirty
+//! Source   Barzilai & Borwein 1988
+//! Checked  tests/it/ik.rs::the_nearest_answer, tests in `nearest.rs`
+
+use super::convergence::is_reached;
+use super::damped_step::DampedProblem;
+use super::levenberg_marquardt::Problem;
+use super::options::IkOptions;
+use crate::linalg::dot;
+use crate::scalar::clamp;
+
+/// Largest number of steps.
+const STEPS: usize = 60;
+/// Damping of the projection, relative to the squared norm of A.
+const DAMPING: f64 = 1e-9;
+/// First step length.
+const FIRST_SHARE: f64 = 0.5;
+/// Range of the step length, and the factor after a step that does not decrease the distance.
+const SHARES: (f64, f64) = (1e-3, 8.0);
+const SHORTER: f64 = 0.25;
+/// Largest change of a coordinate per step [rad, or lengths].
+const LONGEST: f64 = 0.6;
+/// The descent ends where |d|^2 is below this share of the squared distance.
+const FLAT: f64 = 1e-9;
+/// Levenberg-Marquardt steps per step along the self-motion.
+const CORRECTIONS: usize = 8;
+
+/// Workspace of the descent.
+#[derive(Debug, Clone)]
+pub(super) struct Descent {
+    next: Vec<f64>,
+    last_q: Vec<f64>,
+    last_d: Vec<f64>,
+    done: Vec<f64>,
+    free_part: Vec<f64>,
+    desired: Vec<f64>,
+}
+
+impl Descent {
+    pub(super) fn new(problem: &Problem) -> Self {
+        let n = problem.coordinates.len();
+        Self {
+            next: vec![0.0; problem.mechanism.n()],
+            last_q: vec![0.0; n],
+            last_d: vec![0.0; n],
+            done: vec![0.0; problem.m],
+            free_part: vec![0.0; n],
+            desired: vec![0.0; n],
+        }
+    }
+
+    /// Moves the solution `q` along the solutions towards `start`, as close as possible; gives up
+    /// as soon as a squared distance below `bound` is not expected.
+    pub(super) fn run(
+        &mut self,
+        problem: &mut Problem,
+        (q, start): (&mut [f64], &[f64]),
+        options: &IkOptions,
+        bound: f64,
+    ) {
+        let mut far = problem.squared_distance(q, start);
+        let mut share = FIRST_SHARE;
+        problem.evaluate(q);
+        for step in 0..STEPS {
+            for (desired, &c) in self.desired.iter_mut().zip(&problem.coordinates) {
+                *desired = start[c] - q[c];
+            }
+            if !self.project(problem, q) {
+                return;
+            }
+            let slope = dot(&problem.d, &problem.d);
+            if slope <= FLAT * far {
+                return;
+            }
+            if step > 0 {
+                share = self.next_share(problem, q, share);
+                // Four times what a parabola promises.
+                if far - 4.0 * share * slope > bound {
+                    return;
+                }
+            }
+            let most = problem.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+            share = share.min(LONGEST / most);
+            self.last_d.copy_from_slice(&problem.d);
+            for (last, &c) in self.last_q.iter_mut().zip(&problem.coordinates) {
+                *last = q[c];
+            }
+            loop {
+                problem.d.iter_mut().zip(&self.last_d).for_each(|(d, last)| *d = share * last);
+                self.next.copy_from_slice(q);
+                problem.advance(&mut self.next);
+                let (errors, _) = problem.run(&mut self.next, options, CORRECTIONS);
+                let then = problem.squared_distance(&self.next, start);
+                if is_reached(errors, options) && then < far {
+                    far = then;
+                    break;
+                }
+                share *= SHORTER;
+                if share < SHARES.0 {
+                    return;
+                }
+            }
+            q.copy_from_slice(&self.next);
+        }
+    }
+
+    /// The step length from the last step.
+    fn next_share(&self, problem: &Problem, q: &[f64], share: f64) -> f64 {
+        let (mut squared, mut product) = (0.0, 0.0);
+        for (i, &c) in problem.coordinates.iter().enumerate() {
+            let moved = q[c] - self.last_q[i];
+            squared += moved * moved;
+            product += moved * (self.last_d[i] - problem.d[i]);
+        }
+        let next = if product > 0.0 { squared / product } else { 2.0 * share };
+        clamp(next, SHARES.0, SHARES.1)
+    }
+
+    /// The part of a motion `desired` of the problem's coordinates that keeps the goals, into the
+    /// step of the problem; returns its product with a gradient over all coordinates. `None` if
+    /// there is none.
+    pub(super) fn along_solutions(
+        &mut self,
+        problem: &mut Problem,
+        q: &[f64],
+        desired: &[f64],
+        gradient: &[f64],
+    ) -> Option<f64> {
+        problem.evaluate(q);
+        self.desired.copy_from_slice(desired);
+        self.project(problem, q).then(|| {
+            problem.coordinates.iter().zip(&problem.d).map(|(&c, d)| gradient[c] * d).sum()
+        })
+    }
+
+    /// Null-space projection d = (1 - A+ A) desired at the configuration evaluated last; false if it
+    /// fails.
+    fn project(&mut self, problem: &mut Problem, q: &[f64]) -> bool {
+        problem.load_jacobian();
+        let (m, n) = (problem.m, problem.coordinates.len());
+        let damping = DAMPING * dot(&problem.a, &problem.a);
+        problem.clamped.copy_from_slice(&problem.fixed);
+        for _ in 0..=n {
+            self.done.fill(0.0);
+            for (i, desired) in self.desired.iter().enumerate() {
+                let desired = if problem.clamped[i] { 0.0 } else { *desired };
+                self.free_part[i] = desired;
+                for (done, a) in self.done.iter_mut().zip(&problem.a[i * m..]) {
+                    *done += a * desired;
+                }
+            }
+            let (a, e, clamped) = (&problem.a, &self.done, &problem.clamped);
+            let step = DampedProblem { a, e, clamped, damping };
+            if !problem.damped.solve(step, &mut problem.d) {
+                return false;
+            }
+            problem.d.iter_mut().zip(&self.free_part).for_each(|(d, free)| *d = free - *d);
+            if !problem.clamp_at_limits(q) {
+                break;
+            }
+        }
+        true
+    }
+}
+
+impl Problem {
+    /// Squared distance of two configurations over the coordinates that move the end effectors.
+    pub(super) fn squared_distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        self.coordinates.iter().map(|&c| (a[c] - b[c]).powi(2)).sum()
+    }
+}
