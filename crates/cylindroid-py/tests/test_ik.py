@@ -105,6 +105,73 @@ def test_several_frames_at_once():
             call()
 
 
+def test_each_frame_has_its_components_and_weight():
+    r = cy.load("panda")
+    q = [0.3, -0.4, 0.2, -2.0, 0.1, 1.7, 0.5]
+    both = {"link4": r.fk(q, "link4"), r.tool: r.fk(q)}
+    task = {"link4": "z", r.tool: "position"}
+    found = r.ik(both, task=task)
+    assert found.success and found.reason is None
+    assert abs(r.fk(found.q, "link4") - both["link4"])[2, 3] < 1e-5
+    assert abs(r.fk(found.q)[:3, 3] - both[r.tool][:3, 3]).max() < 1e-5
+    # Where both cannot be reached, the heavier one is nearer.
+    apart = {"link4": both["link4"], r.tool: both[r.tool].copy()}
+    apart[r.tool][:3, 3] += [0, 0, 2.0]
+    errors = []
+    for weight in [0.1, 10.0]:
+        weights = {"link4": weight}
+        found = r.ik(apart, task="position", weights=weights, iterations=200)
+        assert not found.success and found.reason.startswith("out of reach")
+        errors.append(abs(r.fk(found.q, "link4") - both["link4"]).max())
+    assert errors[1] < 0.5 * errors[0]
+    assert r.ik_all(both, 2, task=task, weights={"link4": 2.0}).shape[1] == 7
+    for call, words in [
+        (lambda: r.ik(r.fk(q), task={"link4": "z"}), "names frames"),
+        (lambda: r.ik(both, task={"link3": "z"}), "no target"),
+        (lambda: r.ik(both, weights={"link3": 1.0}), "no target"),
+        (lambda: r.ik(r.fk(q), weights={"link3": 1.0}), "names frames"),
+        (lambda: r.ik(both, weights={"link4": 0.0}), "weight"),
+    ]:
+        with pytest.raises(cy.InvalidOptionError, match=words):
+            call()
+
+
+BALLS = """
+name = "panda"
+[[robot]]
+model = "panda"
+[[collision]]
+link = "link4"
+shape = "sphere"
+radius = 0.09
+[[collision]]
+link = "flange"
+shape = "sphere"
+radius = 0.06
+"""
+
+
+def test_solutions_keep_a_gap_and_misses_have_reasons():
+    r = cy.parse(BALLS, format="toml")
+    q = [0.3, -0.4, 0.2, -2.0, 0.1, 1.7, 0.5]
+    model = cy.CollisionModel(r, samples=0)
+    elbow = r.fk(q, "link4")[:3, 3] + [0.02, 0.03, 0.0]
+    model.add_obstacle("ball", "sphere", elbow, radius=0.05)
+    avoid = cy.CollisionAvoidance(model, gap=0.02)
+    assert r.ik(r.fk(q), q0=q).success
+    assert min(model.near(q, margin=0.02).distances) < 0.02
+    for nearest in [False, True]:
+        found = r.ik(r.fk(q), q0=q, nearest=nearest, collisions=avoid)
+        assert found.success and len(model.near(found.q, margin=0.02).distances) == 0
+    assert all(len(model.near(x, margin=0.02).distances) == 0
+               for x in r.ik_all(r.fk(q), 4, collisions=avoid))
+    model.add_obstacle("wall", "sphere", r.fk(q)[:3, 3], radius=0.2)
+    found = r.ik(np.array([r.fk(q), r.fk(r.home)]), collisions=avoid, iterations=2000)
+    assert found.reason[0].startswith("collision") and "wall" in found.reason[0]
+    one = r.ik(r.fk(q), collisions=avoid, iterations=2000)
+    assert not one.success and "wall" in repr(one)
+
+
 def test_what_cannot_be_reached():
     r = cy.load("panda")
     far = np.eye(4)

@@ -3,7 +3,7 @@
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-use super::{ConfigurationArgs, FrameArgs, LimitsArgs, TargetArgs};
+use super::{CollisionArgs, ConfigurationArgs, FrameArgs, LimitsArgs, TargetArgs};
 
 pub(crate) const ABOUT: &str = "\
 Inverse kinematics: configurations that bring a frame to a target, within all limits
@@ -13,8 +13,12 @@ arm), all solutions are computed in closed form; for seven, one joint is sampled
 Otherwise, a numerical solver starts at --q (clamped to the limits) and then at random \
 configurations, until one reaches the target. Every solution is verified by forward kinematics, \
 and the same seed gives the same solution. If no solution is found, the closest configuration is \
-printed; this proves that none exists only if the target is farther away than the length of the \
-arm.
+printed with the reason: the target is farther away than the arm is long (which proves that there \
+is none), bodies are too close in all solutions, a solution exists outside the position limits, or \
+none of these.
+
+With --task FRAME=X,Y,Z several frames are brought to their targets at once. With --avoid or \
+--obstacle links keep a distance from each other and from obstacles.
 
 Exit code 0 if the target is reached, 1 if not, 2 on an error.";
 
@@ -22,7 +26,50 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   cylindroid ik panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
   cylindroid ik ur5e --to 0.3,0.4,0.5 --rpy 3.1416,0,0 --all 8
-  cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest";
+  cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest
+  cylindroid ik docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
+  cylindroid ik panda --task hand_tcp=0.4,0.1,0.5 --task link4=0.1,0,0.6
+
+An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
+
+/// Distances to other bodies.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Collision")]
+pub(crate) struct AvoidanceArgs {
+    /// Keep links at a distance from each other and from obstacles
+    #[arg(long)]
+    pub(crate) avoid: bool,
+
+    /// Least distance that --avoid keeps [m] [default: 0.01]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) gap: Option<f64>,
+
+    #[command(flatten)]
+    pub(crate) collision: CollisionArgs,
+}
+
+impl AvoidanceArgs {
+    /// Least distance where none is given (m).
+    const GAP: f64 = 0.01;
+
+    /// The least distance (m), if distances are to be kept; otherwise an option that has no effect,
+    /// if one is given.
+    pub(crate) fn gap(&self) -> Result<Option<f64>, &'static str> {
+        if self.avoid || !self.collision.obstacle.is_empty() {
+            return Ok(Some(self.gap.unwrap_or(Self::GAP)));
+        }
+        let given = [
+            ("--gap", self.gap.is_some()),
+            ("--srdf", self.collision.srdf.is_some()),
+            ("--meshes", self.collision.meshes.is_some()),
+            ("--samples", self.collision.samples.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(option),
+            None => Ok(None),
+        }
+    }
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct IkArgs {
@@ -62,4 +109,7 @@ pub(crate) struct IkArgs {
     /// Iteration limit, over all restarts
     #[arg(long, value_name = "N", default_value_t = 20_000, allow_negative_numbers = true)]
     pub(crate) iterations: usize,
+
+    #[command(flatten)]
+    pub(crate) avoidance: AvoidanceArgs,
 }

@@ -124,9 +124,9 @@ pub(crate) struct TargetArgs {
 
     /// Controlled components: `pose`, `position`, `orientation`, `pointing` (position and direction of
     /// the tool's z axis), or components like `x,y,rz` [default: those of the target]. Where the
-    /// task asks for more than the target gives, the start's position or orientation is kept. In
-    /// `move` also FRAME=X,Y,Z or FRAME=X,Y,Z,ROLL,PITCH,YAW: a task of another frame [m, rad]; may be
-    /// given several times
+    /// task asks for more than the target gives, the start's position or orientation is kept. Also
+    /// FRAME=X,Y,Z or FRAME=X,Y,Z,ROLL,PITCH,YAW: a task of another frame [m, rad]; may be given
+    /// several times
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Vec<String>,
 

@@ -3,11 +3,14 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::ik::{Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task};
+use cylindroid::Error;
+use cylindroid::ik::{Budget, FoundBy, Goal, IkOptions, MissReason, Solution, Solver, Task};
+use cylindroid::model::Mechanism;
 use serde::Serialize;
 
 use super::target::{errors, target_pose, task};
 use crate::args::IkArgs;
+use crate::commands::distance::collision_model;
 use crate::commands::shared::{Style, answer, configuration, end_effector, limited};
 use crate::output::{self, Align, PoseJson, number};
 
@@ -34,6 +37,15 @@ struct IkJson<'a> {
     /// target is provably out of reach.
     #[serde(skip_serializing_if = "Option::is_none")]
     out_of_reach: Option<ReachJson>,
+    /// The reason for a miss.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<ReasonJson>,
+    /// Least distance of bodies [m], if distances are kept.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gap: Option<f64>,
+    /// All frames with their targets, if there are several.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    goals: Vec<GoalJson<'a>>,
     /// All solutions.
     solutions: Vec<&'a [f64]>,
     start: &'a [f64],
@@ -53,18 +65,91 @@ struct ReachJson {
     length: f64,
 }
 
+/// The reason for a miss, in words and as data.
+#[derive(Debug, Default, Serialize)]
+struct ReasonJson {
+    /// "out of reach", "collision", "limits" or "not proven".
+    kind: &'static str,
+    message: String,
+    /// Coordinates outside whose limits there is a solution.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    joints: Vec<String>,
+    /// Two bodies that are too close, and their distance [m].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    between: Option<[String; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    distance: Option<f64>,
+}
+
+impl From<&MissReason> for ReasonJson {
+    fn from(reason: &MissReason) -> Self {
+        let mut json = Self { kind: reason.name(), message: reason.to_string(), ..Self::default() };
+        match reason {
+            MissReason::Limits { joints } => json.joints.clone_from(joints),
+            MissReason::Collision { between, distance } => {
+                (json.between, json.distance) = (Some(between.clone()), Some(*distance));
+            }
+            _ => {}
+        }
+        json
+    }
+}
+
+/// A frame and its target.
+#[derive(Debug, Serialize)]
+struct GoalJson<'a> {
+    frame: &'a str,
+    components: Vec<&'static str>,
+    target: PoseJson,
+}
+
+/// The target of the arguments, if there is one, and those of frames; with the first in words.
+fn goals(args: &IkArgs, robot: &Mechanism, start: &[f64]) -> anyhow::Result<(Vec<Goal>, String)> {
+    let degrees = args.configuration.degrees;
+    let given = &args.target;
+    let frames = given.frame_tasks()?;
+    let is_given = given.to.is_some()
+        || given.rpy.is_some()
+        || given.quaternion.is_some()
+        || given.rotation_vector.is_some();
+    let mut goals = Vec::new();
+    let mut words = Vec::new();
+    if is_given || frames.is_empty() {
+        let end_effector = end_effector(robot, &args.frame)?;
+        let (task, what) = task(given, None, robot)?;
+        let from = robot.state(start)?.pose(end_effector);
+        let target = target_pose(given, from, degrees, ", or with --task FRAME=X,Y,Z")?;
+        goals.push(Goal { task, ..Goal::pose(end_effector, target) });
+        words.push(what);
+    } else if args.frame.frame.is_some() || args.frame.tool.is_some() {
+        let option = if args.frame.frame.is_some() { "--frame" } else { "--tool" };
+        anyhow::bail!("{option}: there is no target for it; add --to or an orientation");
+    }
+    for frame in &frames {
+        let task = if frame.rpy.is_some() { Task::POSE } else { Task::POSITION };
+        let goal = Goal::pose(robot.frame(&frame.frame)?, frame.target(degrees));
+        goals.push(Goal { task, ..goal });
+        let what = if frame.rpy.is_some() { "position and orientation" } else { "position only" };
+        words.push(what.to_owned());
+    }
+    if let ([_], [what]) = (goals.as_slice(), words.as_slice()) {
+        let what = what.clone();
+        return Ok((goals, what));
+    }
+    let name = |goal: &Goal| robot.frame_of(goal.end_effector.frame).name.clone();
+    let all = goals.iter().zip(&words).map(|(goal, what)| format!("{}: {what}", name(goal)));
+    let what = all.collect::<Vec<_>>().join("; ");
+    Ok((goals, what))
+}
+
 pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     let robot = limited(cylindroid::load(&args.configuration.model)?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
-    let end_effector = end_effector(&robot, &args.frame)?;
-    if args.target.has_frame_tasks() {
-        anyhow::bail!(
-            "--task: ik takes the components of one frame; several frames are tasks of move"
-        );
-    }
-    let (task, what) = task(&args.target, None, &robot)?;
-    let from = robot.state(&start)?.pose(end_effector);
-    let target = target_pose(&args.target, from, args.configuration.degrees, "")?;
+    let (goals, what) = goals(args, &robot, &start)?;
+    let gap = args.avoidance.gap();
+    let gap = gap.map_err(|option| {
+        anyhow::anyhow!("{option} has no effect without --avoid or --obstacle")
+    })?;
     let options = IkOptions {
         position_tolerance: args.tolerance_position,
         orientation_tolerance: args.tolerance_orientation,
@@ -74,8 +159,11 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         budget: Budget { iterations: args.iterations, time: None },
         ..IkOptions::default()
     };
-    let goals = [Goal { end_effector, target, task }];
     let mut solver = Solver::new(&robot, &goals, &options)?;
+    if let Some(gap) = gap {
+        Error::check_finite("--gap", &[gap])?;
+        solver.avoid(collision_model(&robot, &args.avoidance.collision)?, gap)?;
+    }
     let found = match args.all {
         None => vec![solver.solve(&goals)?],
         Some(count) => match solver.solve_distinct(&goals, count)? {
@@ -89,10 +177,16 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         locked: analytic.locked().iter().map(|&c| joint_names[c]).collect(),
     });
     let Some(first) = found.first() else { anyhow::bail!("no configuration was evaluated") };
-    let frame = robot.frame_of(end_effector.frame).name.as_str();
+    let frame_of = |goal: &Goal| robot.frame_of(goal.end_effector.frame).name.as_str();
+    let several = goals.iter().filter(|_| goals.len() > 1).map(|goal| GoalJson {
+        frame: frame_of(goal),
+        components: components(goal.task),
+        target: goal.target.into(),
+    });
+    let Goal { end_effector, target, .. } = goals[0];
     let report = IkJson {
         model: robot.name(),
-        frame,
+        frame: frame_of(&goals[0]),
         tool: end_effector.frame_from_tool.translation.to_array(),
         joint_names,
         success: first.success,
@@ -104,15 +198,30 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         iterations: first.iterations,
         restarts: first.restarts,
         out_of_reach: first.out_of_reach.map(|(distance, length)| ReachJson { distance, length }),
+        reason: first.reason.as_ref().map(ReasonJson::from),
+        gap,
+        goals: several.collect(),
         solutions: found.iter().filter(|s| s.success).map(|s| s.q.as_slice()).collect(),
         start: &start,
         target: target.into(),
     };
     match style {
         Style::Json => output::json(out, &report)?,
-        Style::Table => print(out, &report, (&what, task), &found)?,
+        Style::Table => print(out, &report, (&what, controlled(&goals)), &found)?,
     }
     Ok(answer(first.success))
+}
+
+/// The names of the components of a task.
+fn components(task: Task) -> Vec<&'static str> {
+    let named = Task::COMPONENTS.into_iter().zip(task.components);
+    named.filter(|(_, on)| *on).map(|(name, _)| name).collect()
+}
+
+/// The components of all goals together.
+fn controlled(goals: &[Goal]) -> Task {
+    let any = |i: usize| goals.iter().any(|goal| goal.task.components[i]);
+    Task { components: std::array::from_fn(any), ..Task::POSE }
 }
 
 fn print(
@@ -132,12 +241,19 @@ fn print(
             number(reach.distance),
             number(reach.length)
         ),
-        (None, ..) => {
-            "not reached within the iteration limit, which does not prove that no solution \
-                       exists: raise --iterations, change --seed, or leave components free \
-                       (--task); the closest configuration follows"
-                .to_owned()
-        }
+        (None, ..) => match &report.reason {
+            Some(reason) if reason.kind != MissReason::NotProven.name() => {
+                format!("not reached: {}; this configuration follows", reason.message)
+            }
+            _ => "not reached within the iteration limit, which does not prove that no solution \
+                  exists: raise --iterations, change --seed, or leave components free (--task); the \
+                  closest configuration follows"
+                .to_owned(),
+        },
+    };
+    let frames = match report.goals.as_slice() {
+        [] => report.frame.to_owned(),
+        several => several.iter().map(|goal| goal.frame).collect::<Vec<_>>().join(", "),
     };
     let [position_error, orientation_error] =
         errors(task, report.position_error, report.orientation_error);
@@ -145,7 +261,7 @@ fn print(
         out,
         [
             ("model", report.model.to_owned()),
-            ("frame", report.frame.to_owned()),
+            ("frame", frames),
             ("target", what.to_owned()),
             ("result", result),
             position_error,

@@ -57,5 +57,40 @@ fn what_cannot_be_reached() {
     assert_eq!(far["success"], false);
     assert!(far["out_of_reach"]["distance"].as_f64() > far["out_of_reach"]["length"].as_f64());
     assert_eq!(numbers(&far["q"]).len(), 7);
+    assert_eq!(far["reason"]["kind"], "out of reach");
     assert!(refused(&["ik", "stewart", "--to", "0,0,1"]).contains("loops"));
+}
+
+#[test]
+fn several_frames_at_once() {
+    let command = ["ik", "panda", "--task", "hand_tcp=0.4,0.1,0.5", "--task", "link4=0.1,0,0.6"];
+    let report = json(&command[..4], 0);
+    assert!(report.get("goals").is_none() && report.get("reason").is_none());
+    let report = json(&command, 1);
+    assert_eq!(report["goals"][1]["frame"], "link4");
+    assert_eq!(report["goals"][0]["components"][2], "z");
+    assert!(["limits", "not proven"].contains(&report["reason"]["kind"].as_str().unwrap()));
+    let pose = ["ik", "panda", "--to", "0.4,0.1,0.5", "--task", "link2=0,0,0.333"];
+    assert_eq!(json(&pose, 0)["goals"].as_array().unwrap().len(), 2);
+    let frame = [&command[..], &["--frame", "link3"]].concat();
+    assert!(refused(&frame).contains("no target for it"));
+}
+
+#[test]
+fn solutions_among_obstacles() {
+    let cell = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
+    let command = ["ik", cell, "--to", "0.4,0,0.4", "--obstacle", "ball=sphere:0.1@0.4,0.1,0.3"];
+    let report = json(&command, 0);
+    assert_eq!(report["gap"], 0.01);
+    let q = numbers(&report["q"]).iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let obstacle = &command[4..];
+    let near = json(&[&["distance", cell, "--q", &q, "--margin", "0.01"], obstacle].concat(), 0);
+    assert_eq!(near["near"].as_array().unwrap().len(), 0, "{near}");
+    // A ball around the target is in the way of every solution.
+    let closed = ["ik", cell, "--to", "0.4,0,0.4", "--iterations", "2000"];
+    let closed = [&closed[..], &["--obstacle", "ball=sphere:0.3@0.4,0,0.4"]].concat();
+    let report = json(&closed, 1);
+    assert_eq!(report["reason"]["kind"], "collision");
+    assert!(report["reason"]["distance"].as_f64().unwrap() < 0.01);
+    assert!(refused(&["ik", cell, "--to", "0.4,0,0.4", "--gap", "0.1"]).contains("no effect"));
 }

@@ -1007,9 +1007,11 @@ class Mechanism:
         q0: ArrayLike | None = None,
         *,
         tool: ArrayLike | None = None,
-        task: str | None = None,
+        task: str | dict[str, str] | None = None,
         task_axes: str | None = None,
         nearest: bool = False,
+        weights: dict[str, float] | None = None,
+        collisions: CollisionAvoidance | None = None,
         fixed: Sequence[str] | None = None,
         tolerance_position: float = 1e-06,
         tolerance_orientation: float = 1e-06,
@@ -1024,8 +1026,10 @@ class Mechanism:
         q0: ArrayLike | None = None,
         *,
         tool: ArrayLike | None = None,
-        task: str | None = None,
+        task: str | dict[str, str] | None = None,
         task_axes: str | None = None,
+        weights: dict[str, float] | None = None,
+        collisions: CollisionAvoidance | None = None,
         fixed: Sequence[str] | None = None,
         tolerance_position: float = 1e-06,
         tolerance_orientation: float = 1e-06,
@@ -1495,6 +1499,8 @@ class Solution:
     def restarts(self) -> Any: ...
     @property
     def out_of_reach(self) -> Any: ...
+    @property
+    def reason(self) -> Any: ...
     @property
     def orientation_error(self) -> Any: ...
     def _repr_html_(self) -> str: ...

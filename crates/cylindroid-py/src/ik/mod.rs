@@ -4,15 +4,31 @@ mod search;
 mod solution;
 
 use cylindroid::Error;
-use cylindroid::ik::{IkOptions, Solver, solve_distinct};
+use cylindroid::collision::CollisionModel;
+use cylindroid::ik::{IkOptions, Solver};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use self::search::Search;
 use crate::arrays::{self, Array, Many, Numbers, Rows};
 use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
+use crate::tasks::PyCollisionAvoidance;
 
 pub(crate) use solution::PySolution;
+
+/// The bodies of distances to keep, and the gap.
+fn bodies(
+    py: Python<'_>,
+    collisions: Option<&PyCollisionAvoidance>,
+) -> Result<Option<(CollisionModel, f64)>> {
+    let in_use = "the collision model is in use by a call around this one";
+    let bodies = |c: &PyCollisionAvoidance| match c.model.try_borrow(py) {
+        Ok(model) => Ok((model.inner.clone(), c.gap)),
+        Err(_) => Err(Failure::InUse(in_use.to_owned())),
+    };
+    collisions.map(bodies).transpose()
+}
 
 #[pymethods]
 impl PyMechanism {
@@ -34,10 +50,18 @@ impl PyMechanism {
     ///     Initial guess. Default: home.
     /// tool : array_like, (4, 4), optional
     ///     `frame_from_tool`, a tool point fixed to the frame.
-    /// task, task_axes : str, optional
-    ///     The components that matter, as of `Servo`. Default: the pose.
+    /// task : str or dict of str to str, optional
+    ///     The components that matter, as of `Servo`; a dict gives those of each frame. Default: the
+    ///     pose.
+    /// task_axes : str, optional
+    ///     As of `Servo`.
     /// nearest : bool
     ///     Prefer the solution closest to `q0` over the one found first.
+    /// weights : dict of str to float, optional
+    ///     Factors of the errors of frames, for the configuration that is returned where not all can
+    ///     be reached. Default: 1.
+    /// collisions : CollisionAvoidance, optional
+    ///     A solution keeps the gap between all watched bodies. Default: bodies do not count.
     /// fixed : list of str, optional
     ///     Coordinates that keep the values of `q0`.
     /// tolerance_position, tolerance_orientation : float
@@ -72,9 +96,11 @@ impl PyMechanism {
     /// >>> both = {"link3": arm.fk(q, "link3"), arm.tool: arm.fk(q)}
     /// >>> arm.ik(both, task="position").success
     /// True
+    /// >>> arm.ik(both, task={"link3": "z", arm.tool: "pose"}).success
+    /// True
     #[pyo3(signature = (target, frame = None, q0 = None, *, tool = None, task = None,
-        task_axes = None, nearest = false, fixed = None, tolerance_position = 1e-6,
-        tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
+        task_axes = None, nearest = false, weights = None, collisions = None, fixed = None,
+        tolerance_position = 1e-6, tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn ik(
         &self,
@@ -83,9 +109,11 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'_>>,
         tool: Option<Numbers<'_>>,
-        #[pyo3(from_py_with = argument)] task: Option<&str>,
+        task: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
         #[pyo3(from_py_with = argument)] nearest: bool,
+        #[pyo3(from_py_with = argument)] weights: Option<Bound<'_, PyDict>>,
+        #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'_, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
         #[pyo3(from_py_with = argument)] tolerance_orientation: f64,
@@ -97,6 +125,7 @@ impl PyMechanism {
             frame,
             tool,
             task,
+            weights,
             task_axes,
             fixed,
             tolerance_position,
@@ -105,6 +134,7 @@ impl PyMechanism {
             iterations,
         };
         let options = IkOptions { nearest, ..search.options(self)? };
+        let bodies = bodies(py, collisions.as_deref())?;
         let starts = q0.as_ref().map(|q0| Rows::of(robot, "q0", q0)).transpose()?;
         let targets = search.targets(self, &target)?;
         if let Some(count) = starts.and_then(|s| s.count)
@@ -115,6 +145,9 @@ impl PyMechanism {
         }
         let inner = py.detach(|| {
             let mut solver = Solver::new(robot, &targets.goals, &options)?;
+            if let Some((model, gap)) = bodies {
+                solver.avoid(model, gap)?;
+            }
             let mut solve = |i: usize| {
                 if let Some(starts) = &starts {
                     solver.set_initial_guess(starts.row(if starts.count.is_some() {
@@ -141,9 +174,9 @@ impl PyMechanism {
     /// count : int
     ///     Maximum number of solutions. A redundant arm has infinitely many, of which some are
     ///     returned.
-    /// frame, q0, tool, task, task_axes, fixed, tolerance_position, tolerance_orientation
+    /// frame, q0, tool, task, task_axes, weights, collisions, fixed
     ///     As `ik`.
-    /// seed, iterations
+    /// tolerance_position, tolerance_orientation, seed, iterations
     ///     As `ik`.
     ///
     /// Returns
@@ -155,8 +188,8 @@ impl PyMechanism {
     /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
     ///     As `ik`.
     #[pyo3(signature = (target, count = 8, frame = None, q0 = None, *, tool = None, task = None,
-        task_axes = None, fixed = None, tolerance_position = 1e-6, tolerance_orientation = 1e-6,
-        seed = 0, iterations = 20000))]
+        task_axes = None, weights = None, collisions = None, fixed = None,
+        tolerance_position = 1e-6, tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn ik_all<'py>(
         &self,
@@ -166,8 +199,10 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'py>>,
         tool: Option<Numbers<'py>>,
-        #[pyo3(from_py_with = argument)] task: Option<&str>,
+        task: Option<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
+        #[pyo3(from_py_with = argument)] weights: Option<Bound<'py, PyDict>>,
+        #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'py, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
         #[pyo3(from_py_with = argument)] tolerance_orientation: f64,
@@ -179,6 +214,7 @@ impl PyMechanism {
             frame,
             tool,
             task,
+            weights,
             task_axes,
             fixed,
             tolerance_position,
@@ -187,6 +223,7 @@ impl PyMechanism {
             iterations,
         };
         let mut options = search.options(self)?;
+        let bodies = bodies(py, collisions.as_deref())?;
         if let Some(q0) = &q0 {
             let q0 = q0.vector("q0")?;
             robot.check_q("q0", q0)?;
@@ -197,7 +234,13 @@ impl PyMechanism {
             return Err(Failure::option("target", "a batch", "give one pose, (4, 4)"));
         }
         let goals = targets.at(0);
-        let found = py.detach(|| solve_distinct(robot, &goals, &options, count.max(1)))?;
+        let found = py.detach(|| {
+            let mut solver = Solver::new(robot, &goals, &options)?;
+            if let Some((model, gap)) = bodies {
+                solver.avoid(model, gap)?;
+            }
+            solver.solve_distinct(&goals, count.max(1))
+        })?;
         arrays::rows(py, Some(found.len()), robot.n(), found.iter().map(|s| &s.q))
     }
 }

@@ -46,7 +46,9 @@ impl Targets {
 pub(super) struct Search<'a, 'py> {
     pub(super) frame: Option<&'a str>,
     pub(super) tool: Option<Numbers<'py>>,
-    pub(super) task: Option<&'a str>,
+    pub(super) task: Option<Bound<'py, PyAny>>,
+    /// Factors by frame.
+    pub(super) weights: Option<Bound<'py, PyDict>>,
     pub(super) task_axes: Option<&'a str>,
     pub(super) fixed: Option<Vec<String>>,
     pub(super) tolerance_position: f64,
@@ -73,15 +75,48 @@ impl Search<'_, '_> {
         mechanism: &PyMechanism,
         target: &Bound<'_, PyAny>,
     ) -> Result<Targets> {
-        let task = options::task(&mechanism.inner, self.task, self.task_axes, Task::POSE)?;
+        let by_name = self.task.as_ref().and_then(|task| task.cast::<PyDict>().ok());
         let goal = |frame: Option<&str>| -> Result<Goal> {
             let end_effector = mechanism.end_effector(frame, self.tool.as_ref())?;
-            Ok(Goal { end_effector, target: Pose::IDENTITY, task })
+            let name: Option<String> = match (&self.task, by_name, frame) {
+                (_, Some(tasks), Some(frame)) => {
+                    tasks.get_item(frame)?.map(|name| entry("task", &name)).transpose()?
+                }
+                (Some(name), None, _) => Some(entry("task", name)?),
+                _ => None,
+            };
+            let task =
+                options::task(&mechanism.inner, name.as_deref(), self.task_axes, Task::POSE)?;
+            let weight = match (&self.weights, frame) {
+                (Some(weights), Some(frame)) => weights.get_item(frame)?,
+                _ => None,
+            };
+            let weight = weight.map(|weight| entry("weights", &weight)).transpose()?;
+            let goal = Goal::pose(end_effector, Pose::IDENTITY);
+            Ok(Goal { task, weight: weight.unwrap_or(1.0), ..goal })
         };
         let Ok(by_frame) = target.cast::<PyDict>() else {
+            for (option, given) in [("task", by_name), ("weights", self.weights.as_ref())] {
+                if given.is_some() {
+                    let reason = "it names frames, and so must target";
+                    return Err(Failure::option(option, "a dict", reason));
+                }
+            }
             let poses = poses(&entry("target", target)?)?;
             return Ok(Targets { goals: vec![goal(self.frame)?], poses: vec![poses] });
         };
+        for (option, given) in [("task", by_name), ("weights", self.weights.as_ref())] {
+            for frame in given.into_iter().flat_map(PyDictMethods::keys) {
+                if !by_frame.contains(&frame)? {
+                    let frame: String = entry(option, &frame)?;
+                    return Err(Failure::option(
+                        option,
+                        frame,
+                        "there is no target for this frame",
+                    ));
+                }
+            }
+        }
         if let Some(frame) = self.frame {
             let reason = "the dict of targets names the frames";
             return Err(Failure::option("frame", frame, reason));

@@ -1,6 +1,7 @@
 //! The class `Solution`: the result of inverse kinematics.
 
 use cylindroid::ik::{FoundBy, Solution};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::arrays::{self, Array, Many};
@@ -23,6 +24,9 @@ use crate::table::{self, Table};
 /// out_of_reach : bool or ndarray of bool, (N,)
 ///     True if no solution exists: the target is farther from the first joint than the length of
 ///     the chain. Failure alone does not prove this.
+/// reason : str or None, or list of them
+///     Of a miss: begins with "out of reach" (proven), "collision" (with the two bodies), "limits"
+///     (with the joints: there is a solution outside their position limits) or "not proven".
 #[pyclass(frozen, name = "Solution", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PySolution {
@@ -45,6 +49,9 @@ impl PySolution {
         if let Some((distance, length)) = s.out_of_reach {
             let (distance, length) = (table::number(distance), table::number(length));
             table.row("out of reach", format!("{distance} m away, the arm is {length} m long"));
+        }
+        if let Some(reason) = s.reason.as_ref().filter(|_| s.out_of_reach.is_none()) {
+            table.row("reason", reason.to_string());
         }
         let errors = format!("{:.1e} m, {:.1e} rad", s.position_error, s.orientation_error);
         table.row("errors", errors);
@@ -96,5 +103,14 @@ impl PySolution {
     #[getter]
     fn out_of_reach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         arrays::each(py, &self.inner, |s| s.out_of_reach.is_some())
+    }
+
+    #[getter]
+    fn reason<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let words = |s: &Solution| s.reason.as_ref().map(ToString::to_string);
+        match &self.inner {
+            Many::One(s) => words(s).into_bound_py_any(py),
+            Many::All(all) => all.iter().map(words).collect::<Vec<_>>().into_bound_py_any(py),
+        }
     }
 }

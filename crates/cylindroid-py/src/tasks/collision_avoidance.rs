@@ -1,4 +1,4 @@
-//! The class `CollisionAvoidance`: distances that a servo keeps.
+//! The class `CollisionAvoidance`: distances that a servo or inverse kinematics keeps.
 
 use cylindroid::control::CollisionAvoidance;
 use pyo3::prelude::*;
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use crate::collision::PyCollisionModel;
 use crate::error::{Result, argument};
 
-/// Distances that a `TaskServo` keeps between bodies and to obstacles.
+/// Distances that a `TaskServo` or `Mechanism.ik` keeps between bodies and to obstacles.
 ///
 /// Parameters
 /// ----------
@@ -17,7 +17,7 @@ use crate::error::{Result, argument};
 ///     Least distance [m].
 /// margin : float
 ///     Only pairs closer than this count [m], and of these the 64 closest. It must leave room to
-///     brake.
+///     brake; inverse kinematics does not use it.
 ///
 /// Attributes
 /// ----------
@@ -33,9 +33,9 @@ use crate::error::{Result, argument};
 #[derive(Debug)]
 pub(crate) struct PyCollisionAvoidance {
     #[pyo3(get)]
-    pub(super) model: Py<PyCollisionModel>,
+    pub(crate) model: Py<PyCollisionModel>,
     #[pyo3(get)]
-    pub(super) gap: f64,
+    pub(crate) gap: f64,
     #[pyo3(get)]
     pub(super) margin: f64,
 }
