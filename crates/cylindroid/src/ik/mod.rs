@@ -7,7 +7,9 @@
 //!
 //! Read `goal` and `options`, then `solve`: the closed form (`closed_form`, `analytic`) first, then
 //! random restarts of a damped least-squares iteration (`levenberg_marquardt`), four at once if
-//! possible (`parallel_restarts`).
+//! possible (`parallel_restarts`). The closest solution is that of `nearest` and `self_motion`;
+//! `acceptance` decides what a solution is, `avoidance` keeps it apart from other bodies, and `miss`
+//! finds the reason where there is none.
 //!
 //! ```
 //! use cylindroid::ik::{Goal, IkOptions, solve};

@@ -1,11 +1,12 @@
 //! The closest solution: along the self-motion of every solution, and for arms with one redundant
 //! joint over all branches of its closed form.
 //!
-//! Method   one restart from the initial guess; then the locked joint of the closed form is sampled outwards from its initial value, until
-//!          its own displacement exceeds the distance of the best solution. Solutions that are
-//!          closer than their neighbours on the same branch are the start of a descent along the
-//!          self-motion, in the order of their distance, as long as the branch can come closer than
-//!          the best: the distance changes by no more than the configuration
+//! Method   one restart from the initial guess; then the locked joint of the closed form is sampled
+//!          outwards from its initial value, until its own displacement exceeds the distance of the
+//!          best solution. Solutions that are closer than their neighbours on the same branch are
+//!          the start of a descent along the self-motion, in the order of their distance, as long as
+//!          the branch can come closer than the best: the distance changes by no more than the
+//!          configuration.
 //! Valid    branches and gaps shorter than a sampling step may be missed
 //! Why so   the samples cover all branches for the price of a few random restarts, which reach some
 //!          branches rarely

@@ -6,7 +6,8 @@
 //!          [-pi, pi] without limits, or for joints that return to the same pose after a full
 //!          turn), identical in every run, four at once if possible (`parallel_restarts.rs`). A
 //!          result is a solution if it is within the limits, and within tolerance by forward
-//!          kinematics
+//!          kinematics. The search ends with the budget; earlier if the closed form leaves no
+//!          solution, or its samples for seven joints leave none but on short branches
 //! Valid    any tree. Failure to find a solution is not a proof that none exists, except when the
 //!          target is farther from the first joint than the length of the chain
 //! Source   random restarts: Beeson & Ames 2015 (TRAC-IK)
