@@ -14,7 +14,7 @@ Otherwise, a numerical solver starts at --q (clamped to the limits) and then at 
 configurations, until one reaches the target. Every solution is verified by forward kinematics, \
 and the same seed gives the same solution. If no solution is found, the closest configuration is \
 printed with the reason: the target is farther away than the arm is long (which proves that there \
-is none), bodies are too close in all solutions, a solution exists outside the position limits, or \
+is none), bodies are too close in every solution found, a solution exists outside the position limits, or \
 none of these.
 
 With --task FRAME=X,Y,Z several frames are brought to their targets at once. With --avoid or \
@@ -28,7 +28,6 @@ Examples:
   cylindroid ik ur5e --to 0.3,0.4,0.5 --rpy 3.1416,0,0 --all 8
   cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest
   cylindroid ik docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
-  cylindroid ik panda --task hand_tcp=0.4,0.1,0.5 --task link4=0.1,0,0.6
 
 An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
 

@@ -56,14 +56,14 @@ impl fmt::Display for MissReason {
             ),
             Self::Collision { between: [a, b], distance } if *distance < 0.0 => write!(
                 f,
-                "collision: in all solutions bodies are too close; here {a} and {b} penetrate each \
-                 other by {:.4} m",
+                "collision: bodies are too close in every solution found; here {a} and {b} \
+                 penetrate each other by {:.4} m",
                 -distance
             ),
             Self::Collision { between: [a, b], distance } => write!(
                 f,
-                "collision: in all solutions bodies are too close; here {a} is {distance:.4} m from \
-                 {b}"
+                "collision: bodies are too close in every solution found; here {a} is \
+                 {distance:.4} m from {b}"
             ),
             Self::Limits { joints } => write!(
                 f,
