@@ -14,8 +14,8 @@ Otherwise, a numerical solver starts at --q (clamped to the limits) and then at 
 configurations, until one reaches the target. Every solution is verified by forward kinematics, \
 and the same seed gives the same solution. If no solution is found, the closest configuration is \
 printed with the reason: the target is farther away than the arm is long (which proves that there \
-is none), bodies are too close in every solution found, a solution exists outside the position limits, or \
-none of these.
+is none), bodies are too close in every solution found, a solution exists outside the position \
+limits, or none of these.
 
 With --task FRAME=X,Y,Z several frames are brought to their targets at once. With --avoid or \
 --obstacle links keep a distance from each other and from obstacles.
