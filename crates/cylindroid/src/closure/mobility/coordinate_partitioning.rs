@@ -62,6 +62,8 @@ pub(crate) struct CoordinatePartitioning {
     right_side: Vec<f64>,
     /// Passive rates in the order of the elimination.
     ordered: Vec<f64>,
+    /// Lower bound of the actuated share of a motion at the configuration solved last.
+    least_share: f64,
 }
 
 impl CoordinatePartitioning {
@@ -120,12 +122,18 @@ impl CoordinatePartitioning {
             actuated_rates: vec![0.0; a],
             right_side: vec![0.0; t.max(p)],
             ordered: vec![0.0; p],
+            least_share: 0.0,
         })
     }
 
     /// Number of coordinates and actuated loop joints.
     pub(crate) fn velocities(&self) -> usize {
         self.columns.len()
+    }
+
+    /// Lower bound of the actuated share of all motions at the configuration solved last [-].
+    pub(crate) fn least_share(&self) -> f64 {
+        self.least_share
     }
 
     /// Number of actuated joints that are not locked.
@@ -197,6 +205,7 @@ impl CoordinatePartitioning {
             square += dot(&self.passive_rates, &self.passive_rates);
         }
         // The actuated share of a motion is at least 1 / sqrt(1 + |T|^2).
+        self.least_share = (1.0 + square).sqrt().recip();
         if !((1.0 + square) * MIN_ACTUATED_SHARE * MIN_ACTUATED_SHARE < 1.0) {
             return false;
         }

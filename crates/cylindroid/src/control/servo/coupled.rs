@@ -14,14 +14,16 @@
 //! Stops    before a type II singularity, where the object would gain an uncontrolled motion
 //! Checked  tests/it/servo/object.rs
 
+use super::limits::JointState;
 use super::loop_motions::LoopMotions;
 use super::task_space::TaskSpace;
 use crate::closure::ActuationMap;
+use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::Coupling;
 use crate::error::{Error, Result};
 use crate::ik::Task;
 use crate::linalg::{Matrix, norm};
-use crate::model::Mechanism;
+use crate::model::{Limits, Mechanism};
 use crate::tolerance::{MIN_ACTUATED_SHARE, UNACTUATED};
 
 /// The coupled joints of a servo.
@@ -85,9 +87,26 @@ impl Coupled {
         self.loops.independent
     }
 
-    /// True if joint i (coordinates, then actuated loop joints) is passive.
-    pub(super) fn is_passive(&self, i: usize) -> bool {
-        !self.coupling.is_actuated[i]
+    /// The bounds of joint i (coordinates, then actuated loop joints); `acceleration` is the least of
+    /// the actuated joints.
+    pub(super) fn bounds(
+        &self,
+        i: usize,
+        (limits, acceleration): (&Limits, f64),
+        now: JointState,
+        dt: f64,
+    ) -> VelocityBounds {
+        if self.coupling.is_actuated[i] {
+            return VelocityBounds::next(limits, now, dt);
+        }
+        let mut bounds = VelocityBounds::passive(limits, now, dt);
+        self.loops.bound_passive(i, acceleration, dt, &mut bounds);
+        bounds
+    }
+
+    /// The least acceleration limit of the actuated joints.
+    pub(super) fn least_acceleration(&self, limits: &[Limits]) -> f64 {
+        least_acceleration(&self.coupling.is_actuated, limits)
     }
 
     /// The closed configuration nearest to the measured one.
@@ -200,6 +219,12 @@ impl Coupled {
     }
 }
 
+/// The least acceleration limit of the actuated joints.
+pub(in crate::control) fn least_acceleration(is_actuated: &[bool], limits: &[Limits]) -> f64 {
+    let actuated = limits.iter().zip(is_actuated).filter(|(_, is_actuated)| **is_actuated);
+    actuated.map(|(limits, _)| limits.acceleration).fold(f64::INFINITY, f64::min)
+}
+
 /// The actuation y nearest to these velocities of all joints (unweighted), in the weights of the
 /// actuated ones.
 fn project(
@@ -253,7 +278,7 @@ pub(super) fn not_actuated(
 mod tests {
     use super::*;
     use crate::control::ServoOptions;
-    use crate::control::solver::bounds::{LimitKind, VelocityBounds};
+    use crate::control::solver::bounds::LimitKind;
     use crate::control::solver::saturation::{Problem, Saturator, solve};
     use crate::inverse::Method;
     use crate::kinematics::{Chain, ReferenceFrame};

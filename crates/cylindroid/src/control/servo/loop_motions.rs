@@ -8,11 +8,13 @@
 //!          in full
 //! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs
 
+use super::limits::stopping_velocity;
 use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, assemble};
+use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{Limits, Mechanism};
-use crate::tolerance::NEARLY_CLOSED;
+use crate::tolerance::{MIN_ACTUATED_SHARE, NEARLY_CLOSED};
 
 /// Steps of Newton's method that close a measured configuration: from loops open by
 /// `NEARLY_CLOSED` four reach rounding.
@@ -187,6 +189,34 @@ impl LoopMotions {
         let mut next = self.q.clone();
         self.mechanism.integrate_in_place(&mut next, &velocities[..self.q.len()], dt);
         ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)
+    }
+
+    /// Bounds the velocity of a passive joint such that no step, nor the way to rest, passes a type II
+    /// singularity unseen: the actuated share of motions falls by at most a half in it.
+    pub(in crate::control) fn bound_passive(
+        &self,
+        i: usize,
+        acceleration: f64,
+        dt: f64,
+        bounds: &mut VelocityBounds,
+    ) {
+        let share = if self.is_regular { self.partitioning.least_share() } else { 0.0 };
+        let share = share.max(MIN_ACTUATED_SHARE);
+        let coordinate = self.mechanism.coordinates().get(i);
+        let size = match coordinate {
+            Some(c) if c.kind.is_length() => self.mechanism.reach(),
+            _ => 1.0,
+        };
+        // The share is about the angle to the singularity; passive joints are 1 / share times as fast
+        // as actuated ones.
+        let way = 0.5 * share;
+        let most = size * stopping_velocity(way, acceleration / share, dt);
+        if most < bounds.upper {
+            (bounds.upper, bounds.upper_cause) = (most.max(bounds.lower), LimitKind::Velocity);
+        }
+        if -most > bounds.lower {
+            (bounds.lower, bounds.lower_cause) = ((-most).min(bounds.upper), LimitKind::Velocity);
+        }
     }
 
     /// Assembles the loops of `q` after integration: the actuated joints keep their values if the

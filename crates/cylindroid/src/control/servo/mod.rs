@@ -25,6 +25,7 @@ mod step;
 mod task_space;
 mod twist_step;
 
+pub(super) use coupled::least_acceleration;
 pub(super) use limits::stopping_velocity;
 pub(super) use loop_motions::{LoopMotions, limits_of_loop_joints, nothing_actuated};
 pub(super) use secondary::{SecondaryVelocities, add_posture};

@@ -10,7 +10,9 @@
 use super::levels::TaskRows;
 use super::options::TaskServoOptions;
 use crate::closure::ActuationMap;
-use crate::control::servo::{JointState, LoopMotions, is_locked, nothing_actuated};
+use crate::control::servo::{
+    JointState, LoopMotions, is_locked, least_acceleration, nothing_actuated,
+};
 use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::Coupling;
 use crate::error::Result;
@@ -32,6 +34,8 @@ pub(super) struct Loops {
     motions: LoopMotions,
     coupling: Coupling,
     weights: Vec<f64>,
+    /// The least acceleration limit of the actuated joints.
+    acceleration: f64,
     /// The smallest actuated share of a motion that moves a task, where it is small.
     weakest: Option<f64>,
 }
@@ -58,6 +62,7 @@ impl Motions {
         Ok(Self::Loops(Box::new(Loops {
             coupling: Coupling::new(motions.are_actuated(), motions.actuated),
             weights: (0..limits.len()).map(weight).collect(),
+            acceleration: least_acceleration(&motions.are_actuated(), limits),
             weakest: None,
             motions,
         })))
@@ -169,7 +174,9 @@ impl Motions {
     ) -> VelocityBounds {
         match self {
             Self::Loops(loops) if !loops.coupling.is_actuated[i] => {
-                VelocityBounds::passive(limits, now, dt)
+                let mut bounds = VelocityBounds::passive(limits, now, dt);
+                loops.motions.bound_passive(i, loops.acceleration, dt, &mut bounds);
+                bounds
             }
             _ => VelocityBounds::next(limits, now, dt),
         }

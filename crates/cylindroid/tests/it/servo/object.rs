@@ -304,6 +304,46 @@ fn an_object_must_be_steered() {
     assert!(Servo::new(&none, ServoOptions::new(&none)).is_err());
 }
 
+/// A five-bar sent across its type II singularity stops before, whatever the step and the
+/// accelerations: it used to jump across and lose its loops.
+#[test]
+fn no_step_jumps_across_a_type_ii_singularity() {
+    let mechanism = catalogue::load("five-bar").unwrap();
+    let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
+    let mut stopped = 0;
+    for (x, y) in [(-0.45, 0.9), (0.45, 0.9), (0.0, 1.0), (0.6, -1.2), (-1.0, 0.3)] {
+        for dt in [1e-3, 2e-3, 1e-2] {
+            for acceleration in [5.0, 10.0, 100.0, f64::INFINITY] {
+                let mut options = ServoOptions::new(&mechanism);
+                (options.dt, options.acceleration) = (dt, acceleration);
+                let end_effector = options.end_effector;
+                let pose = mechanism.state(&q).unwrap().pose(end_effector);
+                let target =
+                    Pose { translation: pose.translation + Vec3::new(x, y, 0.0), ..pose };
+                let mut servo = Servo::new(&mechanism, options).unwrap();
+                let mut error = (target.translation - pose.translation).norm();
+                let outcome = simulate(
+                    &mut servo,
+                    &q,
+                    10.0,
+                    |_| (target.into(), true),
+                    |sample| {
+                        let at = mechanism.state(sample.q).unwrap().pose(end_effector);
+                        let now = (target.translation - at.translation).norm();
+                        // Nearer in every step, up to the braking of joints that were pushed.
+                        assert!(now < error + 0.1, "({x}, {y}), dt {dt}, {acceleration}: {now}");
+                        error = error.min(now);
+                    },
+                )
+                .unwrap();
+                assert!(gap(&mechanism, &outcome.q) < 1e-9);
+                stopped += usize::from(matches!(outcome.stall, Some(Stall::TypeII { .. })));
+            }
+        }
+    }
+    assert!(stopped > 10, "{stopped}");
+}
+
 /// A rigid loop whose joints are all passive: nothing to drive.
 #[test]
 fn a_mechanism_without_actuated_joints_is_refused() {

@@ -267,14 +267,17 @@ impl Servo {
 
     /// The bounds of the next joint velocities, in weighted coordinates.
     pub(super) fn load_bounds(&mut self) {
+        let coupled = self.coupled.as_ref();
+        let acceleration =
+            coupled.map_or(f64::INFINITY, |coupled| coupled.least_acceleration(&self.limits));
         for i in 0..self.bounds.len() {
             let c = self.place(i);
             let position = self.chain.q().get(i).copied().unwrap_or(0.0);
             let now = JointState { position, velocity: self.rates[c] };
             let (limits, dt) = (&self.limits[i], self.options.dt);
             let mut bound = match &self.coupled {
-                Some(coupled) if coupled.is_passive(i) => VelocityBounds::passive(limits, now, dt),
-                _ => VelocityBounds::next(limits, now, dt),
+                Some(coupled) => coupled.bounds(i, (limits, acceleration), now, dt),
+                None => VelocityBounds::next(limits, now, dt),
             };
             self.own_bounds[i] = bound;
             bound.lower = self.space.scaled_rate(i, bound.lower);
