@@ -3,7 +3,8 @@
 //!
 //! Formula  y_k = argmin |A_k y - b_k| over the minima of the levels before, l <= G y <= u for all.
 //!          Scaled: of all y with A_k y parallel to b_k the one with the largest scale s <= 1,
-//!          A_k y = s b_k; as two levels, (1 - p p^T) A_k y = 0 and p^T A_k y = |b_k|, p = b_k / |b_k|
+//!          A_k y = s b_k; as two levels, (1 - p p^T) A_k y = 0 and p^T A_k y = |b_k|, p = b_k / |b_k|;
+//!          of several tasks in a level each has its own p and s
 //! Shapes   A_k: m_k x n
 //! Valid    any rank; a direction that cannot be kept exactly is reported
 //! Source   Escande, Mansard & Wieber 2014; Flacco, De Luca & Khatib 2015 (scaling)
@@ -12,54 +13,84 @@
 use super::active_set::{ActiveSet, Level, Objective, Precision};
 use crate::linalg::{dot, norm};
 
-/// A level whose direction is preserved first.
+/// A level of tasks whose directions are preserved first.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct ScaledLevel {
     /// Rows and target of the whole level.
     pub(in crate::control) whole: Level,
-    /// The rows across the target, and the row along it.
+    /// The first row of each task, and the number of rows at the end.
+    first: Vec<usize>,
+    /// Tasks that take no part in this solution.
+    pub(in crate::control) left_aside: Vec<bool>,
+    /// s of each task in the last solution; 1 for those without a target.
+    pub(in crate::control) scales: Vec<f64>,
+    /// False for tasks that could not be kept along their targets.
+    pub(in crate::control) are_straight: Vec<bool>,
+    /// The rows across the targets, and the row along each of them.
     across: Level,
     along: Level,
-}
-
-/// The share of a level that the inequalities permit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::control) struct Share {
-    /// s
-    pub(in crate::control) scale: f64,
-    /// True if the level points along its target.
-    pub(in crate::control) is_straight: bool,
-    /// True if one of the inequalities that were asked for stops it.
-    pub(in crate::control) is_stopped: bool,
 }
 
 /// Parts across the target below this share of it are roundings [-].
 const ACROSS: f64 = 1e-9;
 
 impl ScaledLevel {
-    pub(in crate::control) fn new(m: usize, n: usize) -> Self {
-        Self { whole: Level::new(m, n), across: Level::new(m, n), along: Level::new(1, n) }
+    /// For tasks that begin at these rows, and m rows in all.
+    pub(in crate::control) fn new(mut first: Vec<usize>, m: usize, n: usize) -> Self {
+        let tasks = first.len();
+        first.push(m);
+        Self {
+            whole: Level::new(m, n),
+            first,
+            left_aside: vec![false; tasks],
+            scales: vec![1.0; tasks],
+            are_straight: vec![true; tasks],
+            across: Level::new(m, n),
+            along: Level::new(tasks, n),
+        }
     }
 
-    /// Splits the level; returns the size of the target.
+    /// Splits each task; returns the largest of the targets.
     fn split(&mut self) -> f64 {
-        let Self { whole, across, along } = self;
-        let size = norm(&whole.target);
+        let Self { whole, first, left_aside, across, along, .. } = self;
         whole.scale = whole.rows.frobenius_norm();
         (across.scale, along.scale) = (whole.scale, whole.scale);
-        if size == 0.0 {
-            return size;
-        }
-        for j in 0..whole.rows.cols() {
-            let column = whole.rows.column(j);
-            let share = dot(column, &whole.target) / size;
-            along.rows[(0, j)] = share;
-            let parts = across.rows.column_mut(j).iter_mut().zip(column).zip(&whole.target);
-            parts.for_each(|((x, a), b)| *x = a - share * (b / size));
-        }
         across.target.fill(0.0);
-        along.target[0] = size;
-        size
+        let mut largest = 0.0_f64;
+        for (k, ends) in first.windows(2).enumerate() {
+            let rows = ends[0]..ends[1];
+            let target = &whole.target[rows.clone()];
+            let size = if left_aside[k] { 0.0 } else { norm(target) };
+            largest = largest.max(size);
+            along.target[k] = size;
+            for j in 0..whole.rows.cols() {
+                let column = &whole.rows.column(j)[rows.clone()];
+                let share = if size > 0.0 { dot(column, target) / size } else { 0.0 };
+                along.rows[(k, j)] = share;
+                let parts = across.rows.column_mut(j)[rows.clone()].iter_mut();
+                for ((x, a), b) in parts.zip(column).zip(target) {
+                    *x = match left_aside[k] {
+                        true => 0.0,
+                        // Without a target a task is to rest: all of it is across.
+                        false if size == 0.0 => *a,
+                        false => a - share * (b / size),
+                    };
+                }
+            }
+        }
+        largest
+    }
+
+    /// The shares that y has of the targets.
+    fn load_shares(&mut self, y: &[f64], cut: f64, largest: f64) {
+        let left = self.across.left(y);
+        for (k, ends) in self.first.windows(2).enumerate() {
+            let size = self.along.target[k];
+            let rest = norm(&left[ends[0]..ends[1]]);
+            self.are_straight[k] = rest <= ACROSS * largest + cut;
+            let along = (0..y.len()).map(|j| self.along.rows[(k, j)] * y[j]).sum::<f64>();
+            self.scales[k] = if size > 0.0 { along / size } else { 1.0 };
+        }
     }
 }
 
@@ -76,34 +107,28 @@ impl ActiveSet {
         self.minimise(Objective::Nearest(desired), precision);
     }
 
-    /// The largest share of a level along its direction; `stops` are the inequalities (row and sign
-    /// of the bound) to report.
+    /// The largest shares of the tasks of a level along their directions, in the sense of least
+    /// squares, into `level`; `stops` are the inequalities (row and sign of the bound) to report. True
+    /// if one of them ends a motion.
     pub(in crate::control) fn solve_scaled(
         &mut self,
         level: &mut ScaledLevel,
         precision: Precision,
         mut stops: impl FnMut(usize, f64) -> bool,
-    ) -> Share {
-        let size = level.split();
-        if size == 0.0 {
-            self.solve(&mut level.whole, precision);
-            return Share { scale: 1.0, is_straight: true, is_stopped: false };
-        }
+    ) -> bool {
+        let largest = level.split();
         self.minimise(Objective::Rows(&mut level.across), precision);
         self.keep(&mut level.across, precision);
         let cut = precision.rank * level.whole.scale * norm(self.point());
-        let is_straight = level.across.residual(self.point()) <= ACROSS * size + cut;
         self.minimise(Objective::Rows(&mut level.along), precision);
-        let is_stopped = self.stopping().any(|(row, sign)| stops(row, sign));
+        let mut is_stopped = false;
+        for (row, sign) in self.stopping() {
+            is_stopped |= stops(row, sign);
+        }
         self.keep(&mut level.along, precision);
-        let scale = dot_row(&level.along, self.point()) / size;
-        Share { scale, is_straight, is_stopped }
+        level.load_shares(self.point(), cut, largest);
+        is_stopped
     }
-}
-
-/// `A y` of a level with one row.
-fn dot_row(level: &Level, y: &[f64]) -> f64 {
-    dot(level.rows.as_slice(), y)
 }
 
 #[cfg(test)]

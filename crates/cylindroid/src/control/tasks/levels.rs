@@ -4,19 +4,46 @@
 //! Checked  tests/it/servo/tasks.rs
 
 use super::options::StoppedBy;
+use crate::control::solver::active_set::Level;
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::linalg::Matrix;
 
 /// A level of the stack.
 #[derive(Debug, Clone)]
 pub(super) struct Stack {
-    /// Indices of tasks, and their first rows.
-    pub(super) members: Vec<(usize, usize)>,
+    pub(super) members: Vec<Member>,
     pub(super) level: ScaledLevel,
-    pub(super) direction_changed: bool,
-    pub(super) scale: f64,
+    /// Share of the level that higher levels or singular directions leave out.
     pub(super) left_out: f64,
+}
+
+/// A task in its level.
+#[derive(Debug, Clone)]
+pub(super) struct Member {
+    /// Its index, and its first row in the level.
+    pub(super) task: usize,
+    pub(super) first: usize,
+    /// Its rows alone, where its direction is changed.
+    pub(super) own: Level,
+    pub(super) direction_changed: bool,
+    /// Norm of its scaled error.
+    pub(super) error: f64,
+    pub(super) scale: f64,
     pub(super) stopped_by: Option<StoppedBy>,
+}
+
+impl Member {
+    pub(super) fn new(task: usize, first: usize, own: Level) -> Self {
+        Self {
+            task,
+            first,
+            own,
+            direction_changed: false,
+            error: 0.0,
+            scale: 1.0,
+            stopped_by: None,
+        }
+    }
 }
 
 /// Rows of one task.

@@ -1,5 +1,5 @@
-//! The stack of levels: each is scaled along its direction; where no scale is feasible, its
-//! direction is changed.
+//! The stack of levels: each task is scaled along its direction; where no scale is feasible, its
+//! direction is changed, on what the others of its level leave.
 //!
 //! Formula  `solver/hierarchy.rs`; direction changed: min |A y - b|^2 + d |y|^2, d = k |error|, k and
 //!          its least value from `solver/saturation.rs`
@@ -7,13 +7,18 @@
 //!          changed where a limit stops the rest
 //! Checked  tests/it/servo/tasks.rs
 
+use super::levels::{Member, Stack};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
 use crate::control::solver::active_set::FEASIBLE;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
+use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::saturation::{CURVATURE, LEAST_DAMPING, MIN_SCALE, STRAIGHT};
 use crate::linalg::norm;
+
+/// Tasks that miss less than this share of their velocity are realised as a whole [-].
+const WHOLE: f64 = 1e-9;
 
 /// Halvings of the interval of velocities by which distances give way: to a millionth.
 const RELAXATIONS: usize = 20;
@@ -22,12 +27,17 @@ impl TaskServo {
     /// The stack, level by level; if no scaling of a level is feasible, its direction is changed and
     /// the stack is solved again.
     pub(super) fn solve(&mut self) {
-        self.stacks.iter_mut().for_each(|s| s.direction_changed = false);
-        for _ in 0..=self.stacks.len() {
+        let mut rounds = 1;
+        for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
+            (member.direction_changed, member.stopped_by) = (false, None);
+            rounds += 1;
+        }
+        for _ in 0..rounds {
             if !self.start() {
                 // Limits contradict one another.
                 for stack in &mut self.stacks {
-                    (stack.scale, stack.left_out, stack.stopped_by) = (0.0, 0.0, None);
+                    stack.left_out = 0.0;
+                    stack.members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (0.0, None));
                 }
                 self.last.fill(0.0);
                 self.lowest_stopped_by = None;
@@ -88,57 +98,92 @@ impl TaskServo {
         self.set.start(&self.last)
     }
 
-    /// False if a level was found whose direction must change.
+    /// False if tasks were found whose directions must change.
     fn solve_levels(&mut self) -> bool {
         let length = self.options.length;
         for stack in &mut self.stacks {
-            let whole = &mut stack.level.whole;
-            let mut error = 0.0;
-            for &(i, first) in &stack.members {
-                let (task, rows) = (&self.tasks[i], &self.rows[i]);
+            let Stack { members, level, left_out } = stack;
+            let whole = &mut level.whole;
+            for member in &mut *members {
+                let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
                 let root = task.weight.sqrt();
+                let mut error = 0.0;
                 for r in 0..rows.error.len() {
-                    let scale = root * if task.objective.is_length(r) { 1.0 / length } else { 1.0 };
+                    let scale = root * if rows.is_length[r] { 1.0 / length } else { 1.0 };
                     error += (scale * rows.error[r]).powi(2);
-                    whole.target[first + r] =
+                    whole.target[member.first + r] =
                         scale * (task.gain * rows.error[r] + rows.feed_forward[r]);
                     for j in 0..whole.rows.cols() {
                         let entry = self.motions.entry(|i| rows.jacobian[(r, i)], j);
-                        whole.rows[(first + r, j)] = scale * entry;
+                        whole.rows[(member.first + r, j)] = scale * entry;
                     }
                 }
+                member.error = error.sqrt();
             }
-            if !stack.direction_changed && self.set.solve_freely(whole, self.options.eps) {
-                (stack.scale, stack.left_out, stack.stopped_by) = (1.0, 0.0, None);
+            let any_changed = members.iter().any(|m| m.direction_changed);
+            if !any_changed && self.set.solve_freely(whole, self.options.eps) {
+                members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (1.0, None));
+                *left_out = 0.0;
                 continue;
             }
             let size = norm(&whole.target);
-            let left_out = self.set.reduce_target(whole, self.options.eps);
-            stack.left_out = if size > 0.0 { left_out / size } else { 0.0 };
+            let missing = self.set.reduce_target(whole, self.options.eps);
+            *left_out = if size > 0.0 { missing / size } else { 0.0 };
             let causes = (&self.bounds[..], self.options.half_spaces.len(), &self.near[..]);
             let mut stop = None;
-            if stack.direction_changed {
-                let damping = (CURVATURE * f64::sqrt(error)).max(LEAST_DAMPING);
-                self.set.solve_damped(whole, damping, STRAIGHT, |row| {
+            // Tasks that keep their directions come first.
+            for (aside, member) in level.left_aside.iter_mut().zip(&*members) {
+                *aside = member.direction_changed;
+            }
+            if level.left_aside.contains(&false) {
+                let is_stopped = self.set.solve_scaled(level, STRAIGHT, |row, sign| {
+                    note(&mut stop, cause((row, sign), causes))
+                });
+                if level.change_directions(members, stop, is_stopped) {
+                    return false;
+                }
+            }
+            for member in members.iter_mut().filter(|m| m.direction_changed) {
+                let (own, whole) = (&mut member.own, &level.whole);
+                let rows = member.first..member.first + own.target.len();
+                own.target.copy_from_slice(&whole.target[rows.clone()]);
+                for j in 0..whole.rows.cols() {
+                    let column = &whole.rows.column(j)[rows.clone()];
+                    own.rows.column_mut(j).copy_from_slice(column);
+                }
+                let damping = (CURVATURE * member.error).max(LEAST_DAMPING);
+                let mut stop = None;
+                self.set.solve_damped(own, damping, STRAIGHT, |row| {
                     note(&mut stop, cause(row, causes));
                 });
                 // Inequalities across the target stop only this solution.
-                stack.stopped_by = stop.or(stack.stopped_by);
-                continue;
-            }
-            let share = self.set.solve_scaled(&mut stack.level, STRAIGHT, |row, sign| {
-                note(&mut stop, cause((row, sign), causes))
-            });
-            stack.stopped_by = stop;
-            stack.scale = share.scale.min(1.0);
-            let large = stack.scale >= MIN_SCALE || (stack.scale > 0.0 && !share.is_stopped);
-            if !(share.is_straight && large) {
-                stack.direction_changed = true;
-                stack.scale = 0.0;
-                return false;
+                member.stopped_by = stop.or(member.stopped_by);
             }
         }
         true
+    }
+}
+
+impl ScaledLevel {
+    /// Stores the shares of the tasks; true if the direction of one of them must change.
+    fn change_directions(
+        &self,
+        members: &mut [Member],
+        stop: Option<StoppedBy>,
+        is_stopped: bool,
+    ) -> bool {
+        let mut changed = false;
+        for (k, member) in members.iter_mut().enumerate().filter(|(_, m)| !m.direction_changed) {
+            member.scale = self.scales[k].min(1.0);
+            let is_whole = member.scale >= 1.0 - WHOLE;
+            member.stopped_by = if is_whole && self.are_straight[k] { None } else { stop };
+            let large = member.scale >= MIN_SCALE || (member.scale > 0.0 && !is_stopped);
+            if !(self.are_straight[k] && large) {
+                (member.direction_changed, member.scale) = (true, 0.0);
+                changed = true;
+            }
+        }
+        changed
     }
 }
 

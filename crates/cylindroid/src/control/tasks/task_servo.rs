@@ -18,13 +18,13 @@
 
 use super::gradient::Gradient;
 use super::half_space::HalfSpace;
-use super::levels::{Stack, TaskRows};
+use super::levels::{Member, Stack, TaskRows};
 use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{BrakingState, StallDetector, Status, limits_of_loop_joints};
-use crate::control::solver::active_set::ActiveSet;
+use crate::control::solver::active_set::{ActiveSet, Level};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::inequalities::Inequalities;
@@ -157,18 +157,12 @@ impl TaskServo {
                 for (i, task) in tasks.iter().enumerate() {
                     let m = task.objective.rows();
                     if task.level == level && m > 0 {
-                        members.push((i, first));
+                        members.push(Member::new(i, first, Level::new(m, u)));
                         first += m;
                     }
                 }
-                Stack {
-                    members,
-                    level: ScaledLevel::new(first, u),
-                    direction_changed: false,
-                    scale: 1.0,
-                    left_out: 0.0,
-                    stopped_by: None,
-                }
+                let starts = members.iter().map(|m| m.first).collect();
+                Stack { members, level: ScaledLevel::new(starts, first, u), left_out: 0.0 }
             })
             .collect();
         let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };
@@ -374,8 +368,8 @@ impl TaskServo {
                 self.last.copy_from_slice(self.set.point());
             }
             self.motions.velocities(&self.last, &self.bounds, &mut self.rates);
-            for stack in &mut self.stacks {
-                (stack.scale, stack.stopped_by) = (0.0, Some(StoppedBy::TypeII));
+            for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
+                (member.scale, member.stopped_by) = (0.0, Some(StoppedBy::TypeII));
             }
             self.lowest_stopped_by = Some(StoppedBy::TypeII);
         }
@@ -412,7 +406,8 @@ impl TaskServo {
             let own = rows.error.iter().enumerate();
             own.for_each(|(r, x)| add(task.objective.is_length(r), *x));
             let [position_error, orientation_error] = parts.map(f64::sqrt);
-            let stack = self.stacks.iter().find(|s| s.members.iter().any(|(t, _)| *t == i));
+            let own = |stack: &Stack| stack.members.iter().position(|m| m.task == i);
+            let member = self.stacks.iter().find_map(|s| Some((s, &s.members[own(s)?])));
             let scaled = position_error / self.options.length + orientation_error;
             let reached = position_error <= task.tolerance.position
                 && orientation_error <= task.tolerance.orientation;
@@ -426,9 +421,9 @@ impl TaskServo {
                 status,
                 position_error,
                 orientation_error,
-                scale: stack.map_or(1.0, |s| s.scale),
-                left_out: stack.map_or(lowest_left_out, |s| s.left_out),
-                stopped_by: stack.map_or(self.lowest_stopped_by, |s| s.stopped_by),
+                scale: member.map_or(1.0, |(_, m)| m.scale),
+                left_out: member.map_or(lowest_left_out, |(stack, _)| stack.left_out),
+                stopped_by: member.map_or(self.lowest_stopped_by, |(_, m)| m.stopped_by),
             };
         }
     }

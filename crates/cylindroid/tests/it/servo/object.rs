@@ -318,8 +318,7 @@ fn no_step_jumps_across_a_type_ii_singularity() {
                 (options.dt, options.acceleration) = (dt, acceleration);
                 let end_effector = options.end_effector;
                 let pose = mechanism.state(&q).unwrap().pose(end_effector);
-                let target =
-                    Pose { translation: pose.translation + Vec3::new(x, y, 0.0), ..pose };
+                let target = Pose { translation: pose.translation + Vec3::new(x, y, 0.0), ..pose };
                 let mut servo = Servo::new(&mechanism, options).unwrap();
                 let mut error = (target.translation - pose.translation).norm();
                 let outcome = simulate(

@@ -291,16 +291,17 @@ fn scaled_levels_keep_their_direction() {
         let size = norm(&b);
         let mut set = problem.active_set();
         assert!(set.start(&vec![0.0; problem.n]));
-        let mut level = ScaledLevel::new(a.rows(), problem.n);
+        let mut level = ScaledLevel::new(vec![0], a.rows(), problem.n);
         level.whole.rows = a.clone();
         level.whole.target.copy_from_slice(&b);
-        let share = set.solve_scaled(&mut level, Precision::EXACT, |_, _| false);
+        set.solve_scaled(&mut level, Precision::EXACT, |_, _| false);
+        let scale = level.scales[0];
         problem.assert_feasible(set.point(), "scaled");
-        assert!(share.is_straight, "round {round}");
-        let scaled: Vec<f64> = b.iter().map(|b| share.scale * b).collect();
+        assert!(level.are_straight[0], "round {round}");
+        let scaled: Vec<f64> = b.iter().map(|b| scale * b).collect();
         assert!(residual(&a, &scaled, set.point()) < 1e-9 * (1.0 + size), "round {round}");
         straight += 1;
-        if size < 1e-6 || share.scale >= 1.0 - 1e-12 {
+        if size < 1e-6 || scale >= 1.0 - 1e-12 {
             continue;
         }
         // max s: along the target, nothing across it.
@@ -316,7 +317,7 @@ fn scaled_levels_keep_their_direction() {
             compared += 1;
             let theirs: f64 =
                 along.iter().zip(&other).map(|(a, y)| a * y).sum::<f64>().min(size) / size;
-            assert!((share.scale - theirs).abs() < 1e-7, "round {round}: {share:?}, {theirs}");
+            assert!((scale - theirs).abs() < 1e-7, "round {round}: {scale}, {theirs}");
         }
     }
     assert!(straight == 2000 && compared > 300, "{straight}, {compared}");
