@@ -20,8 +20,8 @@ use crate::options;
 ///
 /// Tasks of level 0 come first; a level moves on what the levels before it leave free, and tasks of
 /// one level share it by their weights. Position, velocity and acceleration limits and distances to
-/// other bodies stand above all levels. A level that they stop is scaled along its direction first;
-/// its direction changes only if no scale is feasible. For arms, hands, several arms, mobile and
+/// other bodies stand above all levels. A task that they stop is scaled along its direction first; its
+/// direction changes only if no scale is feasible. For arms, hands, several arms, mobile and
 /// floating bases, and closed chains, of which the actuated joints are the unknowns.
 ///
 /// Parameters

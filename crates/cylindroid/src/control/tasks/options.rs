@@ -160,13 +160,13 @@ pub struct TaskReport {
     /// Norm of the error's angles, and of the errors of custom tasks (rad); of desired velocities, of
     /// the part that is not realised (rad/s).
     pub orientation_error: f64,
-    /// Share of its level that is realised; 1 when nothing stops it, 0 if its direction is lost.
+    /// Share of its velocity that is realised; 1 when nothing stops it, 0 if its direction is lost.
     /// Postures and velocities have no direction to keep: 1.
     pub scale: f64,
     /// Share of the level's velocity that higher levels or singular directions leave out [-]; of
     /// postures and velocities, the share that is not realised.
     pub left_out: f64,
-    /// The inequality that stops its level, if one does.
+    /// The inequality that stops it, if one does.
     pub stopped_by: Option<StoppedBy>,
 }
 

@@ -1,7 +1,7 @@
 //! The servo of many tasks: one step from joint positions to joint velocities.
 //!
 //! Formula  level by level min |W (J q' - K e - feed-forward)|, each on what the levels before leave
-//!          free, scaled along its direction before it is bent (`solver/hierarchy.rs`); last the
+//!          free, its tasks scaled along their directions before they are bent (`solver/hierarchy.rs`); last the
 //!          joint velocities nearest to the postures. Inequalities stand above all levels:
 //!          position, velocity and acceleration limits (`limits.rs`), and for every near pair of
 //!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance

@@ -120,3 +120,38 @@ fn a_limit_across_the_target_is_named() {
     assert_eq!((report.scale, report.stopped_by), (0.0, Some(expected)), "{report:?}");
     assert!(servo.joint_velocities()[1] > 0.0);
 }
+
+/// One arm is sent out of reach and stopped by its limits: the other one, at the same level, reaches
+/// its target in the time that it needs alone.
+#[test]
+fn a_task_that_limits_stop_does_not_slow_others() {
+    let robot = super::tasks::two_armed();
+    let q: Vec<f64> = (0..robot.n()).map(|i| 0.6 * f64::from(1 - 2 * (i as i32 % 2))).collect();
+    let state = robot.state(&q).unwrap();
+    let hand = |name: &str, way: Vec3| {
+        let frame = robot.frame(name).unwrap();
+        let pose = state.pose(frame);
+        let target = Pose { translation: pose.translation + way, ..pose };
+        let objective = TaskObjective::Frame {
+            end_effector: frame.into(),
+            components: Task::POSITION,
+            target: target.into(),
+        };
+        MotionTask::new(name, objective)
+    };
+    let time = |tasks: Vec<MotionTask>| {
+        let mut servo = TaskServo::new(&robot, tasks, TaskServoOptions::new(&robot)).unwrap();
+        let mut q = q.clone();
+        (0..20_000)
+            .find(|_| {
+                servo.step(&q).unwrap();
+                servo.advance(&mut q);
+                servo.reports()[0].position_error < 1e-4
+            })
+            .unwrap()
+    };
+    let near = || hand("right_6_link", Vec3::new(0.05, -0.05, 0.05));
+    let alone = time(vec![near()]);
+    let beside = time(vec![near(), hand("left_6_link", Vec3::new(3.0, 0.5, 0.0))]);
+    assert!(beside < alone + alone / 4, "{beside} steps instead of {alone}");
+}
