@@ -35,6 +35,9 @@ const PATIENCE: f64 = 0.05;
 /// Eigenvalues of H below this times -|e| open a way [-].
 const OPEN: f64 = 0.02;
 
+/// Singular values above this share of the largest are those of directions that are not lost [-].
+const WEAK: f64 = 0.05;
+
 /// Largest motion of the joints that the second derivatives describe (scaled) [-].
 const QUADRATIC: f64 = 1.0;
 
@@ -63,6 +66,7 @@ pub(super) struct Escape {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Linearised<'a> {
     pub(super) j: &'a Matrix,
+    pub(super) svd: &'a Svd,
     pub(super) bounds: &'a [VelocityBounds],
     /// Velocities of the last step.
     pub(super) last: &'a [f64],
@@ -74,7 +78,8 @@ pub(super) struct Linearised<'a> {
 
 impl Linearised<'_> {
     /// The largest velocities of all joints that the inverse promises, and of each.
-    fn most(&self, largest: f64) -> (f64, f64) {
+    fn most(&self) -> (f64, f64) {
+        let largest = self.svd.value(0);
         let gain = match self.method {
             Method::Truncated { eps } => 1.0 / (eps * largest),
             Method::Damped { damping } => 0.5 / damping,
@@ -122,14 +127,8 @@ impl Escape {
         }
     }
 
-    /// Computes the velocities of an escape; false if no joint motion opens a way. `largest` is the
-    /// largest singular value of J.
-    pub(super) fn solve(
-        &mut self,
-        task: Linearised<'_>,
-        edge: &mut Edge<'_>,
-        largest: f64,
-    ) -> bool {
+    /// Computes the velocities of an escape; false if no joint motion opens a way.
+    pub(super) fn solve(&mut self, task: Linearised<'_>, edge: &mut Edge<'_>) -> bool {
         let n = self.rates.len();
         let size = norm(&self.error);
         edge.load(&self.error, &mut self.hessian);
@@ -143,6 +142,14 @@ impl Escape {
             let blocked = blocks(&task.bounds[i], self.gradient[i]);
             self.is_free[i] = edge.space.columns[i] != 0.0 && !blocked;
         }
+        // A task that a weak inverse slows down is not lost.
+        let along = |u: &[f64]| dot(u, &self.error).powi(2);
+        let strong = (0..task.svd.len()).filter(|i| task.svd.value(*i) > WEAK * task.svd.value(0));
+        let strong: f64 = strong.map(|i| along(task.svd.u(i))).sum();
+        let all_free = task.bounds.iter().zip(&self.gradient).all(|(b, g)| !blocks(b, *g));
+        if all_free && strong > 0.5 * size * size {
+            return false;
+        }
         // Every pass blocks a joint more.
         for _ in 0..=n {
             if !self.solve_free(task, edge, size) {
@@ -155,7 +162,7 @@ impl Escape {
                 }
             }
             if clear {
-                self.slow_down(task, edge, largest);
+                self.slow_down(task, edge);
                 return true;
             }
         }
@@ -163,8 +170,8 @@ impl Escape {
     }
 
     /// Scales the velocities to the limits of the joints and to the bound of the inverse.
-    fn slow_down(&mut self, task: Linearised<'_>, edge: &Edge<'_>, largest: f64) {
-        let (all, each) = task.most(largest);
+    fn slow_down(&mut self, task: Linearised<'_>, edge: &Edge<'_>) {
+        let (all, each) = task.most();
         let mut scale = (all / norm(&self.rates)).min(1.0);
         let own = self.rates.iter().zip(&edge.space.columns).zip(edge.limits);
         for ((rate, column), limit) in own {

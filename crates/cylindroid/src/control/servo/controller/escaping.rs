@@ -64,6 +64,7 @@ impl Servo {
         let Some(escape) = self.escape.as_mut().filter(|e| e.is_active) else { return false };
         let task = Linearised {
             j: &self.task,
+            svd: &self.svd,
             bounds: &self.bounds,
             last: &self.last,
             gain: self.options.gain.position.min(self.options.gain.orientation),
@@ -77,7 +78,7 @@ impl Servo {
             dt: self.options.dt,
             hessian: &mut self.hessian,
         };
-        if !escape.solve(task, &mut edge, self.svd.value(0)) {
+        if !escape.solve(task, &mut edge) {
             return false;
         }
         for ((out, rate), bound) in self.primary.iter_mut().zip(&escape.rates).zip(&self.bounds) {
