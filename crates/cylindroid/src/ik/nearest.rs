@@ -20,6 +20,7 @@ use super::goal::Goal;
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::error::Result;
+use crate::scalar::clamp;
 
 /// Sampling step of the locked joint [rad].
 const STEP: f64 = 0.1;
@@ -104,7 +105,7 @@ impl Solver {
 
     /// The closest solution on the branch to which the iteration leads from the initial guess;
     /// returns its distance, infinite without one.
-    fn from_initial_guess(&mut self, q: &mut [f64], solutions: &mut Vec<Candidate>) -> Result<f64> {
+    fn first_restart(&mut self, q: &mut [f64], solutions: &mut Vec<Candidate>) -> Result<f64> {
         let (errors, _) = self.problem.run(q, &self.options, ITERATIONS_PER_RESTART);
         if !self.options.nearest || !is_reached(errors, &self.options) {
             return Ok(f64::INFINITY);
@@ -126,7 +127,7 @@ impl Solver {
         let own = self.start[locked];
         let mut samples: Vec<Sample> = Vec::new();
         let mut q = self.start.clone();
-        let mut closest = self.from_initial_guess(&mut q, solutions)?;
+        let mut closest = self.first_restart(&mut q, solutions)?;
         q.copy_from_slice(&self.start);
         let (mut best, mut calls) = (closest * closest, 0);
         for k in 0.. {
@@ -143,7 +144,7 @@ impl Solver {
             if value <= range[0] - STEP || value >= range[1] + STEP {
                 continue;
             }
-            let value = value.clamp(range[0], range[1]);
+            let value = clamp(value, range[0], range[1]);
             let apart = value - own;
             calls += 1;
             q[locked] = value;
