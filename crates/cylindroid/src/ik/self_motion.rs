@@ -10,7 +10,7 @@
 //! Why so   with one redundant joint s is the step of the secant method: a handful of steps, where
 //!          a projected gradient takes thirty
 //! Source   Barzilai & Borwein 1988
-//! Checked  tests/it/ik.rs::the_nearest_answer, tests in `nearest.rs`
+//! Checked  tests/it/ik.rs::the_nearest_answer, src/ik/nearest.rs
 
 use super::convergence::is_reached;
 use super::damped_step::DampedProblem;
