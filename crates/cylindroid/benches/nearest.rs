@@ -41,7 +41,7 @@ fn rows(name: &str, robot: &Mechanism, tool: EndEffector) {
             let start = draw();
             let mut target = robot.state(&draw()).unwrap().pose(tool);
             match targets {
-                "shifted by 0.2 m" => target.translation = target.translation + Vec3::X * 0.2,
+                "shifted by 0.2 m" => target.translation += Vec3::X * 0.2,
                 "turned by pi" => {
                     target.rotation =
                         target.rotation * cylindroid::Rotation::exp(Vec3::new(PI, 0.0, 0.0));
