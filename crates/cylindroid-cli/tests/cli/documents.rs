@@ -114,7 +114,11 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["ur5e", "--analytical", "zyz"],
             vec!["youbot", "--twist", "x", "--eps", "1e-6"],
         ],
-        "ik" => vec![with(&["panda"], &UP), vec!["panda", "--to", "2,0,0.5"]],
+        "ik" => vec![
+            with(&["panda"], &UP),
+            vec!["panda", "--to", "2,0,0.5"],
+            vec![CELL, "--task", "hand_tcp=0.4,0,0.4", "--task", "link4=0,0.1,0.65", "--avoid"],
+        ],
         "move" => vec![
             with(&["panda", "--line"], &UP),
             vec!["puma560", "--to", "-0.5,0.2,0.3"],

@@ -170,10 +170,6 @@ fn what_has_no_effect_is_refused() {
     let error = refused(&["move", "panda", "--task", "link4=1,2,3", "--actuated", "panda_joint1"]);
     assert!(error.contains("all joints are actuated"), "{error}");
     assert!(refused(&["move", "panda", "--avoid"]).contains("--tasks FILE.toml"));
-    assert!(
-        refused(&["ik", "panda", "--to", "0,0,1", "--task", "link4=1,2,3"])
-            .contains("tasks of move")
-    );
 }
 
 #[test]
