@@ -104,9 +104,8 @@ The last column is the median beside that of the first row.
 """]
     lines += ["""## In brief
 Each figure is that of the other library divided by that of the first row of this one; above 1 this
-library is faster or nearer. Where limits stop a level, this library shortens the motion of the
-whole level before it changes its direction; the others minimise the sum of squares, which leaves
-smaller errors.
+library is faster or nearer. Where limits stop a task, this library shortens its motion before it
+changes the direction; the others minimise the sum of squares, which leaves smaller errors.
 """, *summary(results), ""]
     for name, scenario in results.items():
         lines.append(f"## {name}\n{scenario['text'][0].upper()}{scenario['text'][1:]}.\n")
