@@ -122,7 +122,7 @@ def test_each_frame_has_its_components_and_weight():
         weights = {"link4": weight}
         found = r.ik(apart, task="position", weights=weights, iterations=200)
         assert not found.success and found.reason.startswith("out of reach")
-        errors.append(abs(r.fk(found.q, "link4") - both["link4"]).max())
+        errors.append(abs(r.fk(found.q, "link4") - both["link4"])[:3, 3].max())
     assert errors[1] < 0.5 * errors[0]
     assert r.ik_all(both, 2, task=task, weights={"link4": 2.0}).shape[1] == 7
     for call, words in [
