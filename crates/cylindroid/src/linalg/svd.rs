@@ -143,6 +143,11 @@ impl Svd {
         );
     }
 
+    /// Forgets the last call: the next warm start is a cold one.
+    pub(crate) fn forget(&mut self) {
+        self.warm = None;
+    }
+
     /// Number of singular values, min(m, n).
     #[must_use]
     pub fn len(&self) -> usize {

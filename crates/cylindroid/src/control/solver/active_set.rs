@@ -139,6 +139,12 @@ impl ActiveSet {
         }
     }
 
+    /// Forgets the last solution.
+    pub(in crate::control) fn reset(&mut self) {
+        self.forget();
+        self.last.fill(0.0);
+    }
+
     /// The present point: feasible after [`ActiveSet::start`] returned true.
     pub(in crate::control) fn point(&self) -> &[f64] {
         &self.y

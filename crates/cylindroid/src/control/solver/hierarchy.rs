@@ -50,6 +50,13 @@ impl ScaledLevel {
         }
     }
 
+    /// Forgets the last solution.
+    pub(in crate::control) fn reset(&mut self) {
+        for level in [&mut self.whole, &mut self.across, &mut self.along] {
+            level.reset();
+        }
+    }
+
     /// Splits each task; returns the largest of the targets.
     fn split(&mut self) -> f64 {
         let Self { whole, first, left_aside, across, along, .. } = self;

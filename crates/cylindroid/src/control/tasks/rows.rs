@@ -15,6 +15,9 @@ use crate::model::Coordinate;
 /// tasks.
 const BRAKING: f64 = 0.5;
 
+/// Distances outside below this share of the reach come from roundings [-].
+const ROUNDING: f64 = 1e-6;
+
 impl TaskServo {
     /// Limits of the joints, and the unknowns of the last velocities.
     pub(super) fn load_bounds(&mut self) {
@@ -82,7 +85,7 @@ impl TaskServo {
         let entries = &self.entries;
         let dt = self.options.dt;
         let acceleration = BRAKING * motions.acceleration(|j| entries[j], &self.limits);
-        let bend = self.bend();
+        let (bend, reach) = (self.bend(), self.state.mechanism().reach());
         let inequalities = &mut self.set.inequalities;
         let own = if self.state.mechanism().is_closed() { self.limits.len() } else { 0 };
         inequalities.set_row(own + place, |j| entries[j]);
@@ -90,7 +93,9 @@ impl TaskServo {
             // Half of the way in a step at most.
             -stopping_velocity(0.5 * (room - bend), acceleration, dt)
         } else {
-            ((bend - room.max(0.0)) / dt).min(acceleration * dt)
+            // What roundings of steps add up to is taken back; a start further outside is not.
+            let own = if room < -ROUNDING * reach { 0.0 } else { room };
+            ((bend - own) / dt).min(acceleration * dt)
         };
     }
 

@@ -279,10 +279,15 @@ impl TaskServo {
         self.motions.close(q);
     }
 
-    /// Resets the servo to rest.
+    /// Resets the servo to rest: it is as a new one with the present tasks.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
         self.detectors.fill(StallDetector::new());
+        self.set.reset();
+        for stack in &mut self.stacks {
+            stack.level.reset();
+            stack.members.iter_mut().for_each(|member| member.own.reset());
+        }
     }
 
     /// One step: [`TaskServo::joint_velocities`] are to be commanded until the next step. Reached if

@@ -51,6 +51,11 @@ impl Level {
         }
     }
 
+    /// Forgets the last decomposition.
+    pub(in crate::control) fn reset(&mut self) {
+        self.svd.forget();
+    }
+
     /// `residual = b - A y`
     pub(super) fn load_residual(&mut self, y: &[f64]) {
         self.residual.copy_from_slice(&self.target);
