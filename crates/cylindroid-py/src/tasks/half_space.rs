@@ -132,7 +132,6 @@ impl PyHalfSpace {
             Ok(point) => Pose::from_translation(Vec3::from_array(point)),
             Err(_) => center.pose("center")?,
         };
-        // The frame is looked up with the mechanism; its index is not read here.
         let walls = HalfSpace::sides_of_box(&name, center, Vec3::from_array(size));
         Ok(walls
             .into_iter()

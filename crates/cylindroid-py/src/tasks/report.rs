@@ -24,12 +24,12 @@ use crate::table::number;
 ///     Share of the level's velocity that higher levels or singular directions leave out; of
 ///     postures and velocities, the share that is not realised.
 /// limit : (str, str) or None
-///     The joint whose limit stops the level, and the kind of the limit: 'position', 'velocity' or
+///     The joint whose limit stops the task, and the kind of the limit: 'position', 'velocity' or
 ///     'acceleration'.
 /// pair : (str, str) or None
-///     The links or obstacles whose distance stops the level.
+///     The links or obstacles whose distance stops the task.
 /// half_space : str or None
-///     The half-space that stops the level.
+///     The half-space that stops the task.
 /// stopped_by : str or None
 ///     The limit, the pair, the half-space or the type II singularity, as text.
 #[pyclass(frozen, name = "TaskReport", module = "cylindroid")]

@@ -20,7 +20,7 @@
 
 use curved::Curved;
 pub(in crate::control) use curved::{Curvature, Path};
-pub(in crate::control) use problem::{LEAST_DAMPING, Problem, STRAIGHT};
+pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem, STRAIGHT};
 
 use super::active_set::{ActiveSet, Level};
 use super::bounds::{LimitKind, VelocityBounds};

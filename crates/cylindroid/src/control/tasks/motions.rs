@@ -76,6 +76,14 @@ impl Motions {
         }
     }
 
+    /// Number of inequality rows for the limits of joints: of a tree none, they bound the unknowns.
+    pub(super) fn limit_rows(&self) -> usize {
+        match self {
+            Self::Tree(_) => 0,
+            Self::Loops(loops) => loops.motions.velocities(),
+        }
+    }
+
     /// The closed configuration nearest to a measured one; of a tree, the measured one.
     pub(super) fn close_measured<'a>(&'a mut self, q: &'a [f64]) -> Result<&'a [f64]> {
         match self {
@@ -115,7 +123,7 @@ impl Motions {
         }
     }
 
-    /// Row `i` of M at column `j`; closed chains only.
+    /// Row `i` of M at column `j`.
     pub(super) fn motion(&self, i: usize, j: usize) -> f64 {
         match self {
             Self::Tree(columns) => {

@@ -21,14 +21,14 @@ const ROUNDING: f64 = 1e-6;
 impl TaskServo {
     /// Limits of the joints, and the unknowns of the last velocities.
     pub(super) fn load_bounds(&mut self) {
-        let is_tree = !self.mechanism().is_closed();
+        let are_units = self.motions.limit_rows() == 0;
         for (i, limits) in self.limits.iter().enumerate() {
             let position = self.state.q().get(i).copied().unwrap_or(0.0);
             let now = JointState { position, velocity: self.rates[i] };
             let bound = self.motions.bounds(i, limits, now, self.options.dt);
             self.bounds[i] = bound;
             let inequalities = &mut self.set.inequalities;
-            if is_tree {
+            if are_units {
                 let column = self.motions.motion(i, i);
                 let scaled = |v: f64| if column == 0.0 { 0.0 } else { v / column };
                 inequalities.lower[i] = scaled(bound.lower);
@@ -85,23 +85,23 @@ impl TaskServo {
         let entries = &self.entries;
         let dt = self.options.dt;
         let acceleration = BRAKING * motions.acceleration(|j| entries[j], &self.limits);
-        let (bend, reach) = (self.bend(), self.state.mechanism().reach());
+        let (second_order, reach) = (self.second_order(), self.state.mechanism().reach());
+        let row = self.motions.limit_rows() + place;
         let inequalities = &mut self.set.inequalities;
-        let own = if self.state.mechanism().is_closed() { self.limits.len() } else { 0 };
-        inequalities.set_row(own + place, |j| entries[j]);
-        inequalities.lower[self.limits.len() + place] = if room > bend {
+        inequalities.set_row(row, |j| entries[j]);
+        inequalities.lower[self.limits.len() + place] = if room > second_order {
             // Half of the way in a step at most.
-            -stopping_velocity(0.5 * (room - bend), acceleration, dt)
+            -stopping_velocity(0.5 * (room - second_order), acceleration, dt)
         } else {
             // What roundings of steps add up to is taken back; a start further outside is not.
             let own = if room < -ROUNDING * reach { 0.0 } else { room };
-            ((bend - own) / dt).min(acceleration * dt)
+            ((second_order - own) / dt).min(acceleration * dt)
         };
     }
 
     /// Bound of the second-order change of a distance in a step with the last velocities (m): its
     /// row is its tangent.
-    fn bend(&self) -> f64 {
+    fn second_order(&self) -> f64 {
         let reach = self.state.mechanism().reach();
         let coordinates = self.state.mechanism().coordinates().iter();
         let moving = coordinates.zip(&self.rates).zip(&self.gradient).filter(|(_, g)| **g != 0.0);
@@ -114,8 +114,8 @@ impl TaskServo {
 
     /// A row without a distance.
     fn clear_distance(&mut self, place: usize) {
-        let own = if self.state.mechanism().is_closed() { self.limits.len() } else { 0 };
-        self.set.inequalities.set_row(own + place, |_| 0.0);
+        let row = self.motions.limit_rows() + place;
+        self.set.inequalities.set_row(row, |_| 0.0);
         self.set.inequalities.lower[self.limits.len() + place] = f64::NEG_INFINITY;
     }
 }

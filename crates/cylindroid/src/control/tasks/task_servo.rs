@@ -167,10 +167,8 @@ impl TaskServo {
             .collect();
         let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };
         let distances = options.half_spaces.len() + pairs;
-        let inequalities = match mechanism.is_closed() {
-            true => Inequalities::new(u, false, v + distances),
-            false => Inequalities::new(u, true, distances),
-        };
+        let limit_rows = motions.limit_rows();
+        let inequalities = Inequalities::new(u, limit_rows == 0, limit_rows + distances);
         let length = options.length;
         let capacity = options.collisions.as_ref().map_or(0, |c| c.model.pairs().len());
         let report = TaskReport {

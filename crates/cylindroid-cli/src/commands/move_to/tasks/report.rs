@@ -44,7 +44,7 @@ struct TaskJson<'a> {
     left_out: f64,
     limit: Option<LimitJson<'a>>,
     pair: Option<[&'a str; 2]>,
-    /// The half-space that stops its level.
+    /// The half-space that stops it.
     half_space: Option<&'a str>,
 }
 

@@ -8,12 +8,9 @@ use super::super::escape::Linearised;
 use super::super::projection::TaskProjection;
 use super::super::stall::BrakingState;
 use super::Servo;
-use crate::control::solver::saturation::Saturation;
+use crate::control::solver::saturation::{FED_FORWARD, Saturation};
 use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
-
-/// A twist beyond this many times gain times error is mainly fed forward [-].
-const FED_FORWARD: f64 = 2.0;
 
 impl Servo {
     /// Bounds, computes and stores the joint velocities.

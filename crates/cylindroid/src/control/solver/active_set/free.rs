@@ -4,7 +4,7 @@
 //!          y + Q L^-1 (b - A y) performs the level, and Q continues the basis
 //! Valid    rows whose least singular value outside Q_0 is above a bound, for which 1 / |L^-1|_F is a
 //!          lower bound; no working rows; a solution within all inequalities. Otherwise nothing changes
-//! Cost     m (k + m) n for m rows after k: a tenth of a singular value decomposition
+//! Cost     of the order of m (k + m) n for m rows after k
 //! Source   Golub & Van Loan, Matrix Computations, 2013, 5.2.8 (modified Gram-Schmidt, twice)
 //! Checked  src/control/solver/hierarchy/tests.rs::free_levels_are_those_of_the_active_set
 

@@ -12,13 +12,9 @@
 //!          squares)
 //! Checked  tests/it/servo/edge.rs
 
-use super::problem::{LEAST_DAMPING, Problem, STRAIGHT};
+use super::problem::{FED_FORWARD, LEAST_DAMPING, Problem, STRAIGHT};
 use crate::control::solver::active_set::{ActiveSet, Level};
 use crate::linalg::{Elimination, Matrix, RankGap, Svd, norm};
-
-/// A task beyond this many times gain times error is mainly fed forward, which has no way that ends
-/// [-].
-const FED_FORWARD: f64 = 2.0;
 
 /// Joint velocities below this share of all are roundings of zero [-].
 const ROUNDING: f64 = 1e-9;

@@ -14,6 +14,10 @@ pub(in crate::control) const STRAIGHT: Precision = Precision { rank: 1e-6, relea
 /// Least damping of a task whose direction is changed [-].
 pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
 
+/// A task beyond this many times gain times error is mainly fed forward, which has no way that ends
+/// [-].
+pub(in crate::control) const FED_FORWARD: f64 = 2.0;
+
 /// Motions of the joints up to which a Jacobian describes that of the task (scaled) [-].
 const LINEAR: f64 = 1.0;
 
