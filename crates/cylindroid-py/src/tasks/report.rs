@@ -19,7 +19,7 @@ use crate::table::number;
 ///     Norm of the error's angles and of the errors of custom tasks (rad); of desired velocities, of
 ///     the part that is not realised (rad/s).
 /// scale : float
-///     Share of its level that is realised: 1 when nothing stops it, 0 if its direction is lost.
+///     Share of its velocity that is realised: 1 when nothing stops it, 0 if its direction is lost.
 /// left_out : float
 ///     Share of the level's velocity that higher levels or singular directions leave out; of
 ///     postures and velocities, the share that is not realised.
