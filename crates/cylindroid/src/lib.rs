@@ -41,7 +41,8 @@
 //! # Layers
 //!
 //! The modules form one line, each imports only those before it: `error, tolerance, scalar, linalg,
-//! spatial, screws, inverse, model, kinematics, collision, closure, manipulability, ik, control`.
+//! spatial, screws, inverse, model, kinematics, collision, closure, manipulability, task,
+//! ik, control`.
 //!
 //! # Features
 //!
@@ -63,6 +64,7 @@ pub mod model;
 mod scalar;
 pub mod screws;
 pub mod spatial;
+mod task;
 pub mod tolerance;
 
 #[cfg(feature = "formats")]

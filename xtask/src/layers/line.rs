@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::source::{files, text_of};
 
 /// The line. A module that is not written yet keeps its place.
-const LINE: [&str; 16] = [
+const LINE: [&str; 17] = [
     "error",
     "tolerance",
     "scalar",
@@ -20,6 +20,7 @@ const LINE: [&str; 16] = [
     "collision",
     "closure",
     "manipulability",
+    "task",
     "ik",
     "control",
     "sweep",

@@ -19,7 +19,7 @@ mod servo;
 mod solver;
 mod tasks;
 
-pub use crate::ik::Task;
+pub use crate::task::Task;
 pub use laws::{
     Admittance, AdmittanceGain, AuthorityTimes, HybridCommand, HybridController, HybridInput,
     InternalForceCommand, InternalForceController, OperatorAuthority, SharedCommand,

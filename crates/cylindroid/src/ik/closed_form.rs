@@ -11,7 +11,7 @@
 use std::f64::consts::PI;
 
 use super::analytic::{Analytic, AnalyticSolutions};
-use super::goal::{Goal, Task};
+use super::goal::Goal;
 use super::options::IkOptions;
 use crate::error::Result;
 use crate::kinematics::{Chain, ReferenceFrame};
@@ -19,6 +19,7 @@ use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
 use crate::scalar::uniform;
 use crate::spatial::Pose;
+use crate::task::Task;
 
 /// Samples of the locked joint before the numerical solver takes over.
 pub(super) const REDUNDANCY_SAMPLES: usize = 16;

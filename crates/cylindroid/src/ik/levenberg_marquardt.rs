@@ -324,12 +324,12 @@ fn is_back_after_a_turn(mechanism: &Mechanism, coordinate: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::goal::Task;
     use super::super::parallel_restarts::{LANES, Restart, solve_batched, solve_with};
     use super::*;
     use crate::kinematics::{ReferenceFrame, serial_batched};
     use crate::model::catalogue;
     use crate::scalar::{Array, uniform};
+    use crate::task::Task;
 
     /// Each equals the single restart up to rounding, which some amplify: its solutions are within
     /// the limits, and nearly all end at the same configuration.

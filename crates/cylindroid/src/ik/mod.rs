@@ -38,8 +38,9 @@ mod self_motion;
 mod solution;
 mod solve;
 
+pub use crate::task::Task;
 pub use analytic::{Analytic, AnalyticSolution, AnalyticSolutions, ArmGeometry, NotSolvable};
-pub use goal::{Goal, Task};
+pub use goal::Goal;
 pub use options::{Budget, IkOptions};
 pub use reason::MissReason;
 pub use solution::{FoundBy, Solution};

@@ -21,9 +21,9 @@ use crate::closure::ActuationMap;
 use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::Coupling;
 use crate::error::{Error, Result};
-use crate::ik::Task;
 use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
+use crate::task::Task;
 use crate::tolerance::{MIN_ACTUATED_SHARE, UNACTUATED};
 
 /// The coupled joints of a servo.

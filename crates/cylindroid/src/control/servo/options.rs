@@ -6,10 +6,10 @@ use super::projection::{ProjectionChoice, TaskProjection};
 use super::secondary::SecondaryTask;
 use super::task_space::TaskScaling;
 use crate::error::{Error, Result};
-use crate::ik::Task;
 use crate::inverse::Method;
 use crate::kinematics::{Chain, EndEffector};
 use crate::model::{Dimension, Mechanism};
+use crate::task::Task;
 use crate::tolerance;
 
 /// Proportional gains [1/s].

@@ -6,11 +6,11 @@
 //! Shapes   J: 6 x n, J_task: m x n
 //! Checked  tests/it/servo/limits.rs::joint_weights_keep_joints_still
 
-use crate::ik::Task;
 use crate::kinematics::{Chain, ReferenceFrame};
 use crate::linalg::Matrix;
 use crate::model::Limits;
 use crate::spatial::Twist;
+use crate::task::Task;
 
 /// The task, and the scales of its rows and columns.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,6 @@
 //! (the levels, solved with `solver/hierarchy.rs`) and `simulation`.
 
 mod gradient;
-mod half_space;
 mod levels;
 mod motions;
 mod objective;
@@ -16,7 +15,7 @@ mod simulation;
 mod stack;
 mod task_servo;
 
-pub use half_space::HalfSpace;
+pub use crate::task::HalfSpace;
 pub use objective::{CustomTask, TaskObjective};
 pub use options::{CollisionAvoidance, MotionTask, StoppedBy, TaskReport, TaskServoOptions};
 pub use simulation::TaskMotionResult;

@@ -2,11 +2,9 @@
 //!
 //! Formula  J q' = K e + feed-forward, with
 //!          frame               e = [p_d - p; log(R_d R^T)] in the axes of the task
-//!          relative frame      the same for reference_from_tool, in the axes of the reference;
-//!                              J = R_a^T (J_b - J_a at the point of b)
+//!          relative frame      `task/relative_frame.rs`
 //!          centre of mass      e = c_d - c,  J = sum m_i J_i / m
-//!          gaze                e = angle(z, d) along z x d,  d = (p - o) / |p - o|;
-//!                              J = (1 - d d^T) (J_w + [d]x J_v / |p - o|)
+//!          gaze                `task/gaze.rs`
 //!          posture             K (q_d - q), rotations on their group
 //! Shapes   e: rows; J: rows x n
 //! Units    m and rad; rows of lengths are divided by the characteristic length by the servo
@@ -17,11 +15,11 @@ use std::fmt;
 use super::gradient::Gradient;
 use crate::control::servo::{SecondaryTask, SecondaryVelocities, Target, add_posture};
 use crate::error::{Error, Result};
-use crate::ik::Task;
-use crate::kinematics::{EndEffector, MassMatrix, ReferenceFrame, State};
+use crate::kinematics::{EndEffector, MassMatrix, State};
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Twist, Vec3};
+use crate::task::{Gaze, RelativeFrame, Task};
 use crate::tolerance::MAX_MAGNITUDE;
 
 /// A task defined by its user: an error and its Jacobian.
@@ -225,12 +223,9 @@ impl TaskObjective {
                 target.check()
             }
             Self::RelativeFrame { end_effector, reference, components, target } => {
-                mechanism.check_frame(end_effector.frame)?;
-                mechanism.check_frame(reference.frame)?;
-                pose("tool of the frame", &end_effector.frame_from_tool)?;
-                pose("tool of the reference frame", &reference.frame_from_tool)?;
-                pose("target of the relative frame", target)?;
-                components.check()
+                let (end_effector, reference) = (*end_effector, *reference);
+                let (components, target) = (*components, *target);
+                RelativeFrame { end_effector, reference, components, target }.check(mechanism)
             }
             Self::CenterOfMass { target, velocity, .. } => {
                 Error::check_finite("target of the centre of mass", &target.to_array())?;
@@ -246,9 +241,7 @@ impl TaskObjective {
                 SecondaryTask::LimitAvoidance { gain: 1.0, margin: *margin }.check(mechanism)
             }
             Self::Gaze { end_effector, point } => {
-                mechanism.check_frame(end_effector.frame)?;
-                pose("tool of the gaze", &end_effector.frame_from_tool)?;
-                Error::check_finite("point of the gaze", &point.to_array())
+                Gaze { end_effector: *end_effector, point: *point }.check(mechanism)
             }
             Self::Posture { q } => mechanism.check_q("posture", q),
             Self::JointVelocities { velocities } => {
@@ -323,26 +316,11 @@ impl TaskObjective {
                 write(components.components, error, forward, &scratch.jacobian, rows);
             }
             Self::RelativeFrame { end_effector, reference, components, target } => {
-                let (a, b) = (state.pose(*reference), state.pose(*end_effector));
-                let a_from_b = a.inverse() * b;
-                let error = components.seen(a_from_b, a_from_b.error_to(*target));
-                let aligned = ReferenceFrame::LocalWorldAligned;
-                state.jacobian_into(*end_effector, aligned, &mut scratch.jacobian);
-                state.jacobian_into(*reference, aligned, &mut scratch.other);
-                let arm = b.translation - a.translation;
-                for j in 0..scratch.jacobian.cols() {
-                    let own = twist_of(scratch.jacobian.column(j));
-                    let other = twist_of(scratch.other.column(j));
-                    let carried = other.linear + other.angular.cross(arm);
-                    let turn = a.rotation.matrix();
-                    let relative = Twist {
-                        linear: turn.tr_mul(own.linear - carried),
-                        angular: turn.tr_mul(own.angular - other.angular),
-                    };
-                    let relative =
-                        Task { components: [true; 6], ..*components }.seen(a_from_b, relative);
-                    scratch.jacobian.column_mut(j).copy_from_slice(&relative.to_array());
-                }
+                let (end_effector, reference) = (*end_effector, *reference);
+                let (components, target) = (*components, *target);
+                let task = RelativeFrame { end_effector, reference, components, target };
+                let error = task.error(state);
+                task.jacobian_into(state, &mut scratch.other, &mut scratch.jacobian);
                 write(components.components, error, Twist::ZERO, &scratch.jacobian, rows);
             }
             Self::CenterOfMass { axes, target, velocity } => {
@@ -365,31 +343,9 @@ impl TaskObjective {
                 }
             }
             Self::Gaze { end_effector, point } => {
-                let pose = state.pose(*end_effector);
-                let way = *point - pose.translation;
-                let distance = way.norm();
-                if distance == 0.0 {
-                    // The point is at the eye: every direction looks at it.
-                    rows.error.fill(0.0);
-                    rows.jacobian.as_mut_slice().fill(0.0);
-                    return Ok(());
-                }
-                let d = way * distance.recip();
-                let z = pose.rotation.z_axis();
-                let error = turn_between(z, d);
-                state.jacobian_into(
-                    *end_effector,
-                    ReferenceFrame::LocalWorldAligned,
-                    &mut scratch.jacobian,
-                );
-                rows.error.copy_from_slice(&error.to_array());
-                for j in 0..scratch.jacobian.cols() {
-                    let own = twist_of(scratch.jacobian.column(j));
-                    let turned = own.angular + d.cross(own.linear) * distance.recip();
-                    rows.jacobian
-                        .column_mut(j)
-                        .copy_from_slice(&(turned - d * d.dot(turned)).to_array());
-                }
+                let task = Gaze { end_effector: *end_effector, point: *point };
+                rows.error.copy_from_slice(&task.error(state).to_array());
+                task.jacobian_into(state, &mut scratch.jacobian, rows.jacobian);
             }
             Self::Posture { .. }
             | Self::JointVelocities { .. }
@@ -418,26 +374,6 @@ fn check_rows(name: &str, rows: &Rows<'_>, n: usize) -> Result<()> {
     Error::check_len(&what("columns of the Jacobian"), n, jacobian.cols())?;
     Error::check_within(&what("error"), rows.error, MAX_MAGNITUDE)?;
     Error::check_within(&what("Jacobian"), jacobian.as_slice(), MAX_MAGNITUDE)
-}
-
-/// The rotation vector of the smallest turn from one unit vector to another; about any axis across
-/// if they are opposite.
-fn turn_between(from: Vec3, to: Vec3) -> Vec3 {
-    let across = from.cross(to);
-    let (sin, cos) = (across.norm(), from.dot(to));
-    if sin > 0.0 {
-        return across * (sin.atan2(cos) / sin);
-    }
-    if cos > 0.0 {
-        return Vec3::ZERO;
-    }
-    let other = if from.x.abs() < 0.6 { Vec3::X } else { Vec3::Y };
-    let axis = from.cross(other);
-    axis * (std::f64::consts::PI / axis.norm())
-}
-
-fn twist_of(column: &[f64]) -> Twist {
-    Twist::from_array(std::array::from_fn(|i| column[i]))
 }
 
 /// The selected rows.

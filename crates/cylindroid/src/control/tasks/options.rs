@@ -2,13 +2,13 @@
 //!
 //! Checked  tests/it/servo/tasks.rs
 
-use super::half_space::HalfSpace;
 use super::objective::TaskObjective;
 use crate::collision::CollisionModel;
 use crate::control::servo::{PoseTolerance, Status};
 use crate::control::solver::bounds::LimitKind;
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
+use crate::task::HalfSpace;
 use crate::tolerance;
 
 /// A task with its gain, weight and priority.

@@ -17,7 +17,6 @@
 //! Checked  tests/it/servo/tasks.rs, tests/allocation.rs
 
 use super::gradient::Gradient;
-use super::half_space::HalfSpace;
 use super::levels::{Member, Stack, TaskRows};
 use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
@@ -32,6 +31,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
+use crate::task::HalfSpace;
 
 /// A controller of any number of tasks with priorities, inside limits and outside of collisions.
 ///

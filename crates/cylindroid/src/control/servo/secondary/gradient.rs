@@ -6,10 +6,10 @@
 
 use super::super::task_space::{TaskScaling, TaskSpace};
 use super::{Context, SecondaryTask};
-use crate::ik::Task;
 use crate::kinematics::{Chain, EndEffector};
 use crate::linalg::{Matrix, Svd};
 use crate::model::{Limits, Mechanism};
+use crate::task::Task;
 
 /// Memory for the velocities of a secondary task.
 #[derive(Debug, Clone)]

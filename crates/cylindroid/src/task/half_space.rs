@@ -69,7 +69,7 @@ impl HalfSpace {
         })
     }
 
-    pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
+    pub(crate) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         mechanism.check_frame(self.end_effector.frame)?;
         let what = |part: &str| format!("{part} of the half-space '{}'", self.name);
         if !self.end_effector.frame_from_tool.is_finite() {
@@ -88,7 +88,7 @@ impl HalfSpace {
     }
 
     /// The distance inside (m, negative outside), and its gradient over the n coordinates.
-    pub(super) fn load(&self, state: &State, jacobian: &mut Matrix, gradient: &mut [f64]) -> f64 {
+    pub(crate) fn load(&self, state: &State, jacobian: &mut Matrix, gradient: &mut [f64]) -> f64 {
         let normal = self.normal * self.normal.norm().recip();
         state.jacobian_into(self.end_effector, ReferenceFrame::LocalWorldAligned, jacobian);
         for (j, g) in gradient.iter_mut().enumerate() {

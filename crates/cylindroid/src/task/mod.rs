@@ -1,0 +1,30 @@
+//! Tasks as errors and Jacobians, shared by inverse kinematics and the servos.
+//!
+//! `components` (the part of an end effector's motion that counts), `relative_frame`, `gaze` and
+//! `half_space`; the centre of mass is that of [`MassMatrix`](crate::kinematics::MassMatrix).
+
+mod components;
+mod gaze;
+mod half_space;
+mod relative_frame;
+
+pub use components::Task;
+pub(crate) use gaze::Gaze;
+pub use half_space::HalfSpace;
+pub(crate) use relative_frame::RelativeFrame;
+
+use crate::error::{Error, Result};
+use crate::spatial::{Pose, Twist};
+
+/// Refuses a non-finite pose.
+fn check_pose(what: &str, pose: &Pose) -> Result<()> {
+    match pose.is_finite() {
+        true => Ok(()),
+        false => Err(Error::NotFinite { what: what.to_owned(), value: f64::NAN }),
+    }
+}
+
+/// The twist of a column of a Jacobian.
+fn twist_of(column: &[f64]) -> Twist {
+    Twist::from_array(std::array::from_fn(|i| column[i]))
+}
