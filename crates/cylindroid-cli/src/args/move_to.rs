@@ -248,7 +248,8 @@ pub(crate) struct ServoArgs {
     #[arg(long, value_name = "V[,W]", allow_hyphen_values = true)]
     pub(crate) speed: Option<Pair>,
 
-    /// Acceleration limit of joints that have none in the model [rad/s^2 or m/s^2] [default: none]
+    /// Acceleration limit of joints that have none in the model [rad/s^2 or m/s^2]; inf for none
+    /// [default: 20, the default ramp; none for closed chains and with several tasks]
     #[arg(long, value_name = "A", allow_hyphen_values = true)]
     pub(crate) acceleration: Option<f64>,
 

@@ -204,6 +204,15 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
     }
 }
 
+/// The acceleration limit that a servo takes in place of those of the model.
+fn default_ramp(robot: &Mechanism) -> String {
+    if robot.is_closed() {
+        return "--limits and --acceleration give them".to_owned();
+    }
+    let ramp = cylindroid::tolerance::DEFAULT_RAMP;
+    format!("default ramp of {ramp} rad/s^2 or m/s^2 (--limits, --acceleration)")
+}
+
 fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow::Result<()> {
     // Link frames have the names of the links, which the tree shows.
     let named: Vec<String> = info
@@ -219,9 +228,9 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
     };
     let unlimited = |c: &CoordinateJson<'_>| c.acceleration.is_infinite();
     let accelerations = match info.report.format {
-        _ if info.n == 0 || !info.coordinates.iter().all(unlimited) => "",
-        "catalogue" => "no limits published; --limits and --acceleration give them",
-        _ => "no limits in the model; --limits and --acceleration give them",
+        _ if info.n == 0 || !info.coordinates.iter().all(unlimited) => String::new(),
+        "catalogue" => format!("no limits published; {}", default_ramp(robot)),
+        _ => format!("no limits in the model; {}", default_ramp(robot)),
     };
     let count = |n: usize| if n == 0 { String::new() } else { n.to_string() };
     output::pairs(
@@ -236,7 +245,7 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
             ("tool frame", format!("{} ({})", info.tool, info.tool_choice)),
             ("named frames", named.join(", ")),
             ("reach [m]", output::number(info.reach)),
-            ("accelerations", accelerations.to_owned()),
+            ("accelerations", accelerations),
             ("formulas for ik", info.inverse_kinematics.structure.clone().unwrap_or_default()),
             ("format", info.report.format.to_owned()),
             ("source", info.report.source.to_owned()),

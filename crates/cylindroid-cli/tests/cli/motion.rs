@@ -17,6 +17,23 @@ fn the_command_of_the_readme_reaches() {
     assert!(report["steps"].as_u64().unwrap() > 0 && report["time"].as_f64().unwrap() > 0.0);
     assert!(report["min_singular_ratio"].as_f64().unwrap() > 0.0);
     assert!(report["limits_hit"].as_array().unwrap().iter().all(|l| l["kind"].is_string()));
+    assert_eq!(report["largest_lag"], 0.0);
+}
+
+#[test]
+fn the_default_ramp_is_named_and_can_be_switched_off() {
+    assert!(text(&["info", "ur5e"]).contains("default ramp of 20"));
+    assert!(!text(&["info", "panda"]).contains("default ramp"));
+    let time = |more: &[&str]| {
+        let report = json(&[&["move", "ur5e", "--to", "0.4,0.2,0.5"], more].concat(), 0);
+        report["time"].as_f64().unwrap()
+    };
+    let (ramp, weak, off) =
+        (time(&[]), time(&["--acceleration", "1"]), time(&["--acceleration", "inf"]));
+    assert!(off < ramp && ramp < weak, "{off} {ramp} {weak}");
+    // A reconfiguration, whose joint motion has bounds of its own.
+    let command = ["move", "puma560", "--to", "-0.5,0.2,0.3", "--acceleration", "inf"];
+    assert_eq!(json(&command, 0)["reached"], true);
 }
 
 #[test]

@@ -49,7 +49,8 @@ pub(crate) use trajectory::PyTrajectory;
 /// speed : float or (float, float), optional
 ///     Speed limits of the tool [m/s, rad/s]. Default: those of the joints.
 /// acceleration : float, optional
-///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
+///     Limit of joints that have none in the model [rad/s^2 or m/s^2]; `inf` for none. Default: 20, the
+///     default ramp; none for closed chains and with `tasks`.
 /// command_timeout : float, optional
 ///     Time for which a twist of `step_twist` holds without a new command (s). Default: 0.1.
 /// limits : dict of str to dict of str to float, optional
@@ -105,6 +106,8 @@ pub(crate) use trajectory::PyTrajectory;
 ///     True in velocity mode if the last command is older than `command_timeout`.
 /// position_error, orientation_error : float
 ///     Before the last step, in the components of the task (m, rad).
+/// lag : float
+///     Time that the tool is behind a moving target (s); zero for fixed targets.
 /// singular_ratio : float
 ///     Smallest singular value of the scaled task Jacobian over the largest.
 /// rank : int

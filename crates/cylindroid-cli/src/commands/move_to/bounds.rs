@@ -40,7 +40,8 @@ pub(super) fn check_jerks(path: &PathArgs) -> Result<()> {
 pub(super) fn joint_defaults(args: &MoveArgs) -> JointDefaults {
     let path = &args.path;
     let (jerk_linear, jerk_angular) = jerks(path);
-    let acceleration = |on_path: f64| args.servo.acceleration.unwrap_or(on_path);
+    let finite = args.servo.acceleration.filter(|a| a.is_finite());
+    let acceleration = |on_path: f64| finite.unwrap_or(on_path);
     JointDefaults {
         angle: KinematicBounds {
             velocity: PATH_SPEED.1,

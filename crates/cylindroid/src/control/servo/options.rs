@@ -82,7 +82,8 @@ pub struct ServoOptions {
     pub inertia_weights: bool,
     /// Largest speeds of the end effector.
     pub speed: SpeedLimit,
-    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; by default the
+    /// default ramp, [`tolerance::DEFAULT_RAMP`], and none for closed chains; infinite for none.
     pub acceleration: f64,
     /// Time for which a twist of [`Servo::step_twist`](super::controller::Servo::step_twist) holds
     /// without a new command (s); infinite for no watchdog.
@@ -96,7 +97,8 @@ pub struct ServoOptions {
 impl ServoOptions {
     /// The defaults for a mechanism: its tool, or the reference of a closed chain; complete poses
     /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the characteristic
-    /// length of the mechanism; twists that hold for 0.1 s.
+    /// length of the mechanism; 20 rad/s^2 or m/s^2 where the model of a tree has no acceleration limit; twists
+    /// that hold for 0.1 s.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         let closed = mechanism.is_closed();
@@ -119,7 +121,7 @@ impl ServoOptions {
             joint_weights: Vec::new(),
             inertia_weights: false,
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
-            acceleration: f64::INFINITY,
+            acceleration: if closed { f64::INFINITY } else { tolerance::DEFAULT_RAMP },
             command_timeout: 0.1,
             secondary: Vec::new(),
             null_space: SecondaryNullSpace::Exact,

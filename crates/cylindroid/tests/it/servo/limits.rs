@@ -9,6 +9,7 @@ fn limits_scale_before_they_bend() {
     let robot = planar(2);
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
+        o.acceleration = f64::INFINITY; // the first step is compared
         o.gain = ServoGains { position: 200.0, orientation: 1.0 };
     });
     let q = [0.4, 0.9];
@@ -47,6 +48,7 @@ fn saturation_uses_the_other_joints() {
     let robot = b.build().unwrap();
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
+        o.acceleration = f64::INFINITY; // the first step is compared
         o.gain = ServoGains { position: 1.0, orientation: 1.0 };
     });
     let q = [0.3, 0.8, -0.5, 0.9];
@@ -159,7 +161,9 @@ fn singular_poses_keep_rates_bounded() {
                         translation: start.translation + direction * (0.1 * sign),
                         rotation: Rotation::exp(direction * (0.3 * sign)) * start.rotation,
                     };
-                    let mut servo = servo(robot, |o| o.method = method);
+                    let mut servo = servo(robot, |o| {
+                        (o.method, o.acceleration) = (method, f64::INFINITY);
+                    });
                     let (gain, length) = (servo.options().gain, servo.options().length);
                     let check = |sample: cylindroid::control::TrajectorySample<'_>| {
                         let size =
@@ -224,6 +228,7 @@ fn joint_weights_keep_joints_still() {
     let rates = |weights: Vec<f64>| {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
+            o.acceleration = f64::INFINITY; // the first step is compared
             o.joint_weights = weights;
         });
         servo.step(&q, target).unwrap();
@@ -235,5 +240,48 @@ fn joint_weights_keep_joints_still() {
     for rates in [even, heavy] {
         let v = j.mul_vec(&rates);
         assert!((v[0] - 0.05).abs() < 1e-10 && (v[1] + 0.1).abs() < 1e-10);
+    }
+}
+
+/// Where the model has no acceleration limit, the first step from rest commands no jump, unless the
+/// ramp is switched off.
+#[test]
+fn the_first_step_is_a_ramp() {
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let q = [0.0, -1.5, 1.5, -1.5, -1.57, 0.0];
+    let mut target = ur5e.state(&q).unwrap().pose(ur5e.tool());
+    target.translation += Vec3::new(-0.3, 0.2, 0.1);
+    let fastest = |acceleration: Option<f64>| {
+        let mut servo = servo(&ur5e, |o| o.acceleration = acceleration.unwrap_or(o.acceleration));
+        servo.step(&q, target).unwrap();
+        let step = servo.options().dt;
+        servo.joint_velocities().iter().fold(0.0, |m: f64, v| m.max(v.abs())) / step
+    };
+    let ramp = cylindroid::tolerance::DEFAULT_RAMP;
+    assert!((fastest(None) - ramp).abs() < 1e-9 * ramp, "{}", fastest(None));
+    assert!(fastest(Some(f64::INFINITY)) > 10.0 * ramp);
+}
+
+/// The default ramp costs no targets: random motions with it and without.
+#[test]
+fn the_default_ramp_costs_no_targets() {
+    for name in ["ur5e", "iiwa14", "puma560"] {
+        let robot = catalogue::load(name).unwrap();
+        let runs = 100;
+        let reached = |acceleration: f64| {
+            let mut random = Random(197);
+            let mut servo = servo(&robot, |o| (o.dt, o.acceleration) = (4e-3, acceleration));
+            let motions = (0..runs).filter(|_| {
+                let (from, to) = (random.q(&robot), random.q(&robot));
+                let target = robot.state(&to).unwrap().pose(robot.tool());
+                servo.reset();
+                run(&mut servo, &from, target).reached
+            });
+            motions.count()
+        };
+        let with = reached(cylindroid::tolerance::DEFAULT_RAMP);
+        let without = reached(f64::INFINITY);
+        println!("{name}: {with} of {runs} reached with the default ramp, {without} without");
+        assert!(with + 3 >= without, "{name}: {with} {without}");
     }
 }
