@@ -25,6 +25,8 @@ use crate::table::{self, Table};
 /// steps : int
 /// time : float
 ///     Duration (s).
+/// largest_lag : float
+///     The largest time that the tool was behind a moving target (s).
 /// min_singular_ratio : float
 ///     Smallest ratio of singular values during the motion.
 /// limits_hit : list of (str, str)
@@ -87,6 +89,11 @@ impl PyMotionResult {
     #[getter]
     fn time(&self) -> f64 {
         self.outcome.time
+    }
+
+    #[getter]
+    fn largest_lag(&self) -> f64 {
+        self.outcome.largest_lag
     }
 
     #[getter]

@@ -53,6 +53,11 @@ impl PyServo {
     }
 
     #[getter]
+    fn lag(&self) -> Result<f64> {
+        Ok(self.lock()?.last.map_or(f64::NAN, |s| s.lag))
+    }
+
+    #[getter]
     fn singular_ratio(&self) -> Result<f64> {
         Ok(self.lock()?.last.map_or(f64::NAN, |s| s.singular_ratio))
     }

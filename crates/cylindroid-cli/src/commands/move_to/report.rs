@@ -74,6 +74,8 @@ struct MoveJson<'a> {
     orientation_error: f64,
     steps: usize,
     time: f64,
+    /// The largest time that the tool was behind a moving target (s).
+    largest_lag: f64,
     /// Smallest on the way.
     min_singular_ratio: f64,
     /// Divides the linear rows for the singular values [m].
@@ -167,6 +169,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         orientation_error: outcome.last.orientation_error,
         steps: outcome.steps,
         time: outcome.time,
+        largest_lag: outcome.largest_lag,
         min_singular_ratio: outcome.min_singular_ratio,
         length: options.length,
         limits_hit: outcome
@@ -267,6 +270,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             position_error,
             orientation_error,
             ("largest path deviation", deviation),
+            ("largest lag [s]", lag(job, outcome)),
             (
                 "loops open by at most",
                 closure_error.map_or_else(String::new, |g| {
@@ -288,6 +292,12 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
         ],
     )?;
     Ok(())
+}
+
+/// The lag behind a moving target, where it exceeds a few steps.
+fn lag(job: &Job, outcome: &MotionResult) -> String {
+    let is_behind = outcome.largest_lag > 10.0 * job.options.dt;
+    if is_behind { output::number(outcome.largest_lag) } else { String::new() }
 }
 
 /// The inverse, its pitch and its fallback.

@@ -59,6 +59,7 @@ pub(super) fn simulate(
                 last,
                 steps,
                 time,
+                largest_lag: 0.0,
                 min_singular_ratio,
                 limits_hit,
                 no_inverse,

@@ -38,6 +38,8 @@ pub struct MotionResult {
     pub steps: usize,
     /// Duration (s).
     pub time: f64,
+    /// Largest time that the tool was behind a moving target (s), see [`Step::lag`].
+    pub largest_lag: f64,
     /// Smallest ratio of singular values during the motion.
     pub min_singular_ratio: f64,
     /// Limits that bounded a joint velocity during the motion: index in `q` and kind.
@@ -83,7 +85,7 @@ pub fn simulate(
     let dt = servo.options().dt;
     let mut q = q.to_vec();
     let mut steps = 0_usize;
-    let mut min_singular_ratio = f64::INFINITY;
+    let (mut largest_lag, mut min_singular_ratio) = (0.0_f64, f64::INFINITY);
     let mut limits_hit = BTreeSet::new();
     let mut no_inverse = None;
     let mut steps_without_inverse = 0;
@@ -91,6 +93,7 @@ pub fn simulate(
         let time = steps as f64 * dt;
         let (now, is_final) = target(time);
         let step = servo.step(&q, now)?;
+        largest_lag = largest_lag.max(step.lag);
         min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
         limits_hit.extend(servo.active_limits());
         observe(TrajectorySample {
@@ -115,6 +118,7 @@ pub fn simulate(
                 last: step,
                 steps,
                 time,
+                largest_lag,
                 min_singular_ratio,
                 limits_hit,
                 no_inverse,

@@ -17,12 +17,14 @@
 
 pub(super) mod condition;
 mod escaping;
+mod moving_target;
 mod stages;
 mod tracking;
 mod velocity_mode;
 
 use super::coupled::Coupled;
 use super::escape::Escape;
+use super::following::TargetFollower;
 use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
@@ -104,6 +106,7 @@ pub struct Servo {
     position_stall: StallDetector,
     twist_follower: TwistFollower,
     last_target: Option<Pose>,
+    follower: TargetFollower,
     distance: f64,
 }
 
@@ -205,6 +208,7 @@ impl Servo {
             position_stall: StallDetector::new(),
             twist_follower: TwistFollower::new(m),
             last_target: None,
+            follower: TargetFollower::new(m),
             distance: 0.0,
             chain,
         };
@@ -328,11 +332,7 @@ impl Servo {
         };
 
         self.note_configuration(q);
-        if self.last_target != Some(target.pose) {
-            self.last_target = Some(target.pose);
-            self.stall_detector = StallDetector::new();
-            self.position_stall = StallDetector::new();
-        }
+        let is_left_behind = self.follow(&target, &desired, pose, braking);
         let tolerance = self.options.tolerance;
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
@@ -344,7 +344,7 @@ impl Servo {
         let out_of_reach = self.is_out_of_reach();
         let dt = self.options.dt;
         let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
-        let stalled = self.stall_detector.stalled(scaled, braking, dt) || far;
+        let stalled = self.stall_detector.stalled(scaled, braking, dt) || far || is_left_behind;
         let status = if near && self.settled(desired.feed_forward) {
             Status::Reached
         } else if stalled || self.is_stopped() {
@@ -357,6 +357,7 @@ impl Servo {
             pose,
             position_error,
             orientation_error,
+            lag: self.follower.lag,
             singular_ratio: self.singular_ratio(),
             rank,
             saturation,
@@ -440,6 +441,7 @@ impl Servo {
         self.rates.fill(0.0);
         self.stall_detector = StallDetector::new();
         self.last_target = None;
+        self.follower.reset();
         self.twist_follower.reset();
         self.approaches_type_ii = false;
         if let Some(escape) = &mut self.escape {

@@ -11,6 +11,7 @@ mod controller;
 mod coupled;
 mod edge;
 mod escape;
+mod following;
 mod inertia_weights;
 mod inverse_choice;
 mod limits;

@@ -67,7 +67,7 @@ pub enum Status {
     /// Both errors are within tolerance, and the tool moves so slowly relative to the target that
     /// they stay within it: speed <= gain * tolerance.
     Reached,
-    /// The error no longer falls; [`Servo::stall`](super::controller::Servo::stall) gives the
+    /// The error no longer falls, or the tool no longer moves although the target does; [`Servo::stall`](super::controller::Servo::stall) gives the
     /// reason.
     Stalled,
 }
@@ -95,6 +95,9 @@ pub struct Step {
     pub position_error: f64,
     /// Angle to the target, in the components of the task (rad).
     pub orientation_error: f64,
+    /// Time that the tool is behind a moving target (s): the error along the target's motion, over its
+    /// speed. Zero for fixed targets.
+    pub lag: f64,
     /// Ratio of the smallest to the largest singular value of the scaled task Jacobian.
     pub singular_ratio: f64,
     /// Number of directions with a gain times singular value of at least one half.

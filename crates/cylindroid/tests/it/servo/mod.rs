@@ -10,6 +10,7 @@ mod internal_force;
 mod inverse_choice;
 mod limits;
 mod measured;
+mod moving;
 mod object;
 mod projection;
 mod reconfiguration;

@@ -1,0 +1,97 @@
+//! Moving targets: how far the tool is behind, and whether it still follows.
+//!
+//! Formula  v, a: the twists of the target and of the tool, means over the last `WINDOW` seconds,
+//!          exponentially weighted; v is fed forward, or the difference of successive targets.
+//!          lag = <e, v> / |v|^2; stalled where |a| < `FOLLOWED` |v| for `PATIENCE` seconds in which no
+//!          joint accelerates at its limit
+//! Shapes   e, v, a: m            Units    scaled task coordinates, s
+//! Why so   the error of a target that moves away says nothing about progress, and a tool at the edge
+//!          of its workspace that moves along with the target is as near as it can be
+//! Checked  tests/it/servo/moving.rs
+
+use crate::linalg::{dot, norm};
+
+/// Time constant of the means (s).
+const WINDOW: f64 = 0.25;
+/// Share of the target's speed below which the tool does not follow [-].
+const FOLLOWED: f64 = 0.05;
+/// Time without progress until the stall is named, and at rest until a target counts as fixed (s).
+const PATIENCE: f64 = 1.0;
+
+/// The motions of a target and of the tool.
+#[derive(Debug, Clone)]
+pub(super) struct TargetFollower {
+    /// The twist of the target in this step, scaled.
+    pub(super) twist: Vec<f64>,
+    target: Vec<f64>,
+    tool: Vec<f64>,
+    /// Time since the target moved (s).
+    at_rest: f64,
+    blocked: f64,
+    /// Time that the tool is behind the target (s); zero for fixed targets.
+    pub(super) lag: f64,
+}
+
+impl TargetFollower {
+    /// For tasks of m components.
+    pub(super) fn new(m: usize) -> Self {
+        let zero = vec![0.0; m];
+        let at_rest = f64::INFINITY;
+        Self {
+            twist: zero.clone(),
+            target: zero.clone(),
+            tool: zero,
+            at_rest,
+            blocked: 0.0,
+            lag: 0.0,
+        }
+    }
+
+    /// No target.
+    pub(super) fn reset(&mut self) {
+        (self.at_rest, self.blocked, self.lag) = (f64::INFINITY, 0.0, 0.0);
+        self.target.fill(0.0);
+        self.tool.fill(0.0);
+    }
+
+    /// True while the target moves, or did a short while ago.
+    pub(super) fn is_moving(&self) -> bool {
+        self.at_rest <= PATIENCE
+    }
+
+    /// Records a step of `dt` seconds: whether the target moved by `twist`, the error, and the twist of
+    /// the tool.
+    pub(super) fn record(&mut self, moved: bool, error: &[f64], tool: &[f64], dt: f64) {
+        if moved {
+            self.at_rest = 0.0;
+        } else {
+            self.at_rest += dt;
+            self.twist.fill(0.0);
+            if !self.is_moving() {
+                self.reset();
+                return;
+            }
+        }
+        let share = dt / (WINDOW + dt);
+        let mean = |mean: &mut [f64], now: &[f64]| {
+            mean.iter_mut().zip(now).for_each(|(m, x)| *m += (x - *m) * share);
+        };
+        mean(&mut self.target, &self.twist);
+        mean(&mut self.tool, tool);
+        let square = dot(&self.target, &self.target);
+        self.lag = if square > 0.0 { (dot(error, &self.target) / square).max(0.0) } else { 0.0 };
+    }
+
+    /// Records whether a joint accelerates at its limit; true if the tool does not follow.
+    pub(super) fn is_stalled(&mut self, accelerating: bool, dt: f64) -> bool {
+        if !self.is_moving() {
+            return false;
+        }
+        if norm(&self.tool) >= FOLLOWED * norm(&self.target) {
+            self.blocked = 0.0;
+        } else if !accelerating {
+            self.blocked += dt;
+        }
+        self.blocked > PATIENCE
+    }
+}
