@@ -2,8 +2,8 @@
 //!
 //! Formula  v, a: the twists of the target and of the tool, means over the last `WINDOW` seconds,
 //!          exponentially weighted; v is fed forward, or the difference of successive targets.
-//!          lag = <e, v> / |v|^2; stalled where |a| < `FOLLOWED` |v| for `PATIENCE` seconds in which no
-//!          joint accelerates at its limit
+//!          lag = <e, v> / |v|^2; stalled where a is below `FOLLOWED` |v| along v and along e for
+//!          `PATIENCE` seconds in which no joint accelerates at its limit
 //! Shapes   e, v, a: m            Units    scaled task coordinates, s
 //! Why so   the error of a target that moves away says nothing about progress, and a tool at the edge
 //!          of its workspace that moves along with the target is as near as it can be
@@ -13,7 +13,7 @@ use crate::linalg::{dot, norm};
 
 /// Time constant of the means (s).
 const WINDOW: f64 = 0.25;
-/// Share of the target's speed below which the tool does not follow [-].
+/// Share of the target's speed below which the tool neither follows nor approaches [-].
 const FOLLOWED: f64 = 0.05;
 /// Time without progress until the stall is named, and at rest until a target counts as fixed (s).
 const PATIENCE: f64 = 1.0;
@@ -27,6 +27,8 @@ pub(super) struct TargetFollower {
     tool: Vec<f64>,
     /// Time since the target moved (s).
     at_rest: f64,
+    /// The tool's speed along the target's motion or towards the target, the larger (scaled) [1/s].
+    progress: f64,
     blocked: f64,
     /// Time that the tool is behind the target (s); zero for fixed targets.
     pub(super) lag: f64,
@@ -42,6 +44,7 @@ impl TargetFollower {
             target: zero.clone(),
             tool: zero,
             at_rest,
+            progress: 0.0,
             blocked: 0.0,
             lag: 0.0,
         }
@@ -78,8 +81,13 @@ impl TargetFollower {
         };
         mean(&mut self.target, &self.twist);
         mean(&mut self.tool, tool);
-        let square = dot(&self.target, &self.target);
-        self.lag = if square > 0.0 { (dot(error, &self.target) / square).max(0.0) } else { 0.0 };
+        let (speed, size) = (norm(&self.target), norm(error));
+        let along = |way: &[f64], length: f64| {
+            if length > 0.0 { dot(&self.tool, way) / length } else { 0.0 }
+        };
+        self.progress = along(&self.target, speed).max(along(error, size));
+        let behind = if speed > 0.0 { dot(error, &self.target) / (speed * speed) } else { 0.0 };
+        self.lag = behind.max(0.0);
     }
 
     /// Records whether a joint accelerates at its limit; true if the tool does not follow.
@@ -87,7 +95,7 @@ impl TargetFollower {
         if !self.is_moving() {
             return false;
         }
-        if norm(&self.tool) >= FOLLOWED * norm(&self.target) {
+        if self.progress >= FOLLOWED * norm(&self.target) {
             self.blocked = 0.0;
         } else if !accelerating {
             self.blocked += dt;

@@ -4,6 +4,7 @@ mod closed_tasks;
 mod condition;
 mod edge;
 mod escape;
+mod figure_eights;
 mod hybrid;
 mod inertia;
 mod internal_force;
