@@ -5,24 +5,31 @@
 //!          lag = <e, v> / |v|^2; stalled where a is below `FOLLOWED` |v| along v and along e for
 //!          `PATIENCE` seconds in which no joint accelerates at its limit
 //! Shapes   e, v, a: m            Units    scaled task coordinates, s
-//! Why so   the error of a target that moves away says nothing about progress, and a tool at the edge
+//! Why so   the tool's motion is that between steps: at a singularity J q' points outwards while the arm
+//!          swings to and fro. The error of a target that moves away says nothing about progress, and a tool at the edge
 //!          of its workspace that moves along with the target is as near as it can be
 //! Checked  tests/it/servo/moving.rs
 
 use crate::linalg::{dot, norm};
+use crate::spatial::Pose;
 
 /// Time constant of the means (s).
 const WINDOW: f64 = 0.25;
 /// Share of the target's speed below which the tool neither follows nor approaches [-].
-const FOLLOWED: f64 = 0.05;
+const FOLLOWED: f64 = 0.1;
+/// Scaled errors below this are rounding, without a direction [-].
+const ROUNDING: f64 = 1e-9;
 /// Time without progress until the stall is named, and at rest until a target counts as fixed (s).
 const PATIENCE: f64 = 1.0;
 
 /// The motions of a target and of the tool.
 #[derive(Debug, Clone)]
 pub(super) struct TargetFollower {
-    /// The twist of the target in this step, scaled.
+    /// The twists of the target and of the tool in this step, scaled.
     pub(super) twist: Vec<f64>,
+    pub(super) tool_twist: Vec<f64>,
+    /// The pose of the last step.
+    pub(super) last_pose: Option<Pose>,
     target: Vec<f64>,
     tool: Vec<f64>,
     /// Time since the target moved (s).
@@ -41,6 +48,8 @@ impl TargetFollower {
         let at_rest = f64::INFINITY;
         Self {
             twist: zero.clone(),
+            tool_twist: zero.clone(),
+            last_pose: None,
             target: zero.clone(),
             tool: zero,
             at_rest,
@@ -53,6 +62,7 @@ impl TargetFollower {
     /// No target.
     pub(super) fn reset(&mut self) {
         (self.at_rest, self.blocked, self.lag) = (f64::INFINITY, 0.0, 0.0);
+        self.last_pose = None;
         self.target.fill(0.0);
         self.tool.fill(0.0);
     }
@@ -62,9 +72,8 @@ impl TargetFollower {
         self.at_rest <= PATIENCE
     }
 
-    /// Records a step of `dt` seconds: whether the target moved by `twist`, the error, and the twist of
-    /// the tool.
-    pub(super) fn record(&mut self, moved: bool, error: &[f64], tool: &[f64], dt: f64) {
+    /// Records a step of `dt` seconds: whether the target moved by `twist`, and the error.
+    pub(super) fn record(&mut self, moved: bool, error: &[f64], dt: f64) {
         if moved {
             self.at_rest = 0.0;
         } else {
@@ -80,10 +89,10 @@ impl TargetFollower {
             mean.iter_mut().zip(now).for_each(|(m, x)| *m += (x - *m) * share);
         };
         mean(&mut self.target, &self.twist);
-        mean(&mut self.tool, tool);
+        mean(&mut self.tool, &self.tool_twist);
         let (speed, size) = (norm(&self.target), norm(error));
         let along = |way: &[f64], length: f64| {
-            if length > 0.0 { dot(&self.tool, way) / length } else { 0.0 }
+            if length > ROUNDING { dot(&self.tool, way) / length } else { 0.0 }
         };
         self.progress = along(&self.target, speed).max(along(error, size));
         let behind = if speed > 0.0 { dot(error, &self.target) / (speed * speed) } else { 0.0 };

@@ -33,8 +33,10 @@ impl Servo {
             None => Twist::ZERO,
         };
         self.space.scale(twist, &mut self.follower.twist);
-        self.load_achieved_twist();
-        self.follower.record(moved, &self.error, &self.achieved_twist, dt);
+        let moves = |last: Pose| self.options.task.seen(pose, last.error_to(pose) * (1.0 / dt));
+        let tool = self.follower.last_pose.replace(pose).map_or(Twist::ZERO, moves);
+        self.space.scale(tool, &mut self.follower.tool_twist);
+        self.follower.record(moved, &self.error, dt);
         self.follower.is_stalled(braking.accelerating, dt)
     }
 }
