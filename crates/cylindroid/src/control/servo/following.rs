@@ -10,16 +10,17 @@
 //!          of its workspace that moves along with the target is as near as it can be
 //! Checked  tests/it/servo/moving.rs
 
+use super::stall::{BrakingState, TURN_ROUND};
 use crate::linalg::{dot, norm};
 use crate::spatial::Pose;
 
-/// Time constant of the means (s).
+/// Time constant of the means (s), and time at rest from which a target is fixed.
 const WINDOW: f64 = 0.25;
 /// Share of the target's speed below which the tool neither follows nor approaches [-].
 const FOLLOWED: f64 = 0.1;
 /// Scaled errors below this are rounding, without a direction [-].
 const ROUNDING: f64 = 1e-9;
-/// Time without progress until the stall is named, and at rest until a target counts as fixed (s).
+/// Time without progress until the stall is named (s), beside that in which joints reverse.
 const PATIENCE: f64 = 1.0;
 
 /// The motions of a target and of the tool.
@@ -69,7 +70,7 @@ impl TargetFollower {
 
     /// True while the target moves, or did a short while ago.
     pub(super) fn is_moving(&self) -> bool {
-        self.at_rest <= PATIENCE
+        self.at_rest <= WINDOW
     }
 
     /// Records a step of `dt` seconds: whether the target moved by `twist`, and the error.
@@ -99,16 +100,16 @@ impl TargetFollower {
         self.lag = behind.max(0.0);
     }
 
-    /// Records whether a joint accelerates at its limit; true if the tool does not follow.
-    pub(super) fn is_stalled(&mut self, accelerating: bool, dt: f64) -> bool {
+    /// Records the acceleration of the joints; true if the tool does not follow.
+    pub(super) fn is_stalled(&mut self, braking: BrakingState, dt: f64) -> bool {
         if !self.is_moving() {
             return false;
         }
         if self.progress >= FOLLOWED * norm(&self.target) {
             self.blocked = 0.0;
-        } else if !accelerating {
+        } else if !braking.accelerating {
             self.blocked += dt;
         }
-        self.blocked > PATIENCE
+        self.blocked > PATIENCE + TURN_ROUND * braking.stopping_time
     }
 }

@@ -23,7 +23,7 @@ use crate::tolerance::TRUNCATION;
 const WINDOW: f64 = 1.0;
 const SHARE: f64 = 1e-3;
 /// Times |v| / A that a joint takes to return to its position [-]: 1 + 2 sqrt 2, rounded up.
-const TURN_ROUND: f64 = 4.0;
+pub(super) const TURN_ROUND: f64 = 4.0;
 /// Share of the squared error along controllable directions above which the motion counts as
 /// possible [-].
 const POSSIBLE: f64 = 1e-4;

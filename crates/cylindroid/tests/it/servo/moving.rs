@@ -82,7 +82,7 @@ fn a_target_that_is_too_fast_is_no_stall() {
         Vec3::new(angle.cos() - 1.0, angle.sin(), 0.0) * radius
     };
     for i in 0..(6.0 / DT) as usize {
-        let translation = pose.translation + circle(i as f64 * DT, 0.15, 3.0);
+        let translation = pose.translation + circle(i as f64 * DT, 0.15, 1.0);
         let step = servo.step(&q, Pose { translation, ..pose }).unwrap();
         servo.advance(&mut q);
         assert_ne!(step.status, Status::Stalled, "{i}");

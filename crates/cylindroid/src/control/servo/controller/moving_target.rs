@@ -5,6 +5,7 @@
 use super::super::stall::{BrakingState, StallDetector};
 use super::super::step::{DesiredMotion, Target};
 use super::Servo;
+use crate::linalg::norm;
 use crate::spatial::{Pose, Twist};
 
 impl Servo {
@@ -37,6 +38,14 @@ impl Servo {
         let tool = self.follower.last_pose.replace(pose).map_or(Twist::ZERO, moves);
         self.space.scale(tool, &mut self.follower.tool_twist);
         self.follower.record(moved, &self.error, dt);
-        self.follower.is_stalled(braking.accelerating, dt)
+        let is_stalled = self.follower.is_stalled(braking, dt);
+        if is_stalled && is_fed_forward && norm(&self.error) < norm(&self.x) * dt {
+            // Classified by the twist, in place of an error.
+            self.twist_follower.is_stalled = true;
+            self.space.scale(twist, &mut self.error);
+            self.projected_error.copy_from_slice(&self.error);
+            self.step_projection.apply(&mut self.projected_error);
+        }
+        is_stalled
     }
 }
