@@ -6,8 +6,8 @@
 //!          `PATIENCE` seconds in which no joint accelerates at its limit
 //! Shapes   e, v, a: m            Units    scaled task coordinates, s
 //! Why so   the tool's motion is that between steps: at a singularity J q' points outwards while the arm
-//!          swings to and fro. The error of a target that moves away says nothing about progress, and a tool at the edge
-//!          of its workspace that moves along with the target is as near as it can be
+//!          swings to and fro. The error of a target that moves away says nothing about progress, and a
+//!          tool at the edge of its workspace that moves along with the target is as near as it can be
 //! Checked  tests/it/servo/moving.rs
 
 use super::stall::{BrakingState, TURN_ROUND};

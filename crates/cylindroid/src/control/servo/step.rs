@@ -67,8 +67,8 @@ pub enum Status {
     /// Both errors are within tolerance, and the tool moves so slowly relative to the target that
     /// they stay within it: speed <= gain * tolerance.
     Reached,
-    /// The error no longer falls, or the tool no longer moves although the target does; [`Servo::stall`](super::controller::Servo::stall) gives the
-    /// reason.
+    /// The error no longer falls, or the tool no longer moves although the target does;
+    /// [`Servo::stall`](super::controller::Servo::stall) gives the reason.
     Stalled,
 }
 
