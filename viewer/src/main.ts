@@ -2,6 +2,7 @@
 import { Sphere, Vector3 } from "three";
 import { Bar } from "./controls/bar";
 import { Joints } from "./controls/joints";
+import { Obstacles as ObstaclePanel } from "./controls/obstacles";
 import { ServoControls } from "./controls/servo";
 import { Switches } from "./controls/switches";
 import { Tools } from "./controls/tools";
@@ -10,8 +11,10 @@ import { h } from "./dom";
 import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
 import { Overlays } from "./overlays/overlays";
+import { Obstacles } from "./obstacles";
 import { capabilityPanel } from "./panels/capability";
 import { Compare } from "./panels/compare";
+import { Distances } from "./panels/distances";
 import { mobilityPanel } from "./panels/mobility";
 import { posePanel } from "./panels/pose";
 import { Reports } from "./panels/reports";
@@ -56,22 +59,39 @@ function start(): void {
   const target = new Target(stage, {
     target: (pose) => session.sendSoon("target", { type: "target", ...pose }),
     point: (position) => compare.movePoint(position),
+    obstacle: (name, pose) => obstaclePanel.drag(name, pose),
+    settled: () => redraw(),
   });
+  /** Puts the handle on an obstacle, or back on the target. */
+  const hold = (name: string | null): void => {
+    const object = name === null ? null : obstacles.object(name);
+    if (name !== null && object) target.hold(name, object);
+    else if (target.handle === "obstacle") target.setHandle("target");
+    obstaclePanel.show(target.obstacle);
+    tools.held();
+  };
+  const obstacles = new Obstacles(stage, { picked: hold, problem: (sentence) => page.toast(sentence, true) }, () => target.isHovered());
+  const obstaclePanel = new ObstaclePanel(session, hold);
   const recorder = new Recorder();
   let fitWanted = true;
   const fit = (): void => stage.fit(target.within(robot.box()));
-  const tools = new Tools(page.tools, target, stage, fit);
+  const tools = new Tools(page.tools, target, stage, fit, () => obstaclePanel.show(null));
   const joints = new Joints(session);
   const servo = new ServoControls(session);
+  const redraw = (): void => {
+    if (session.scene && session.state) draw(session.scene, session.state);
+    stage.invalidate();
+  };
+  const distances = new Distances(session, labels, redraw);
   const switches = new Switches(overlays, (shown) => robot.showShapes(shown));
   const [pose, singular, screws] = [posePanel(), singularPanel(), screwsPanel()];
   const reports = new Reports(session);
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
   reports.watch("mobility", mobility);
   reports.watch("manipulability", capability);
-  page.left.append(joints.panel.element, switches.panel.element, servo.panel.element);
-  page.right.append(...[pose, singular, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
-  stage.scene.add(robot.group, overlays.group);
+  page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element);
+  page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
+  stage.scene.add(robot.group, overlays.group, obstacles.group, distances.group);
 
   const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
   screws.onToggle(wantScrews);
@@ -98,7 +118,7 @@ function start(): void {
     },
     share: () => void share(),
   });
-  const restore = new Restore(session, overlays, stage, page.toast);
+  const restore = new Restore(session, overlays, stage, page.toast, () => distances.ask());
 
   async function share(): Promise<void> {
     const shot = restore.now();
@@ -124,6 +144,10 @@ function start(): void {
     servo.build(scene);
     tools.build(scene);
     switches.build(scene, robot.hasShapes);
+    obstacles.build(scene);
+    const wanted = obstaclePanel.added;
+    obstaclePanel.build(scene);
+    hold(wanted);
     compare.offer(scene);
     restore.scene(scene);
     stage.invalidate();
@@ -156,6 +180,9 @@ function start(): void {
     bar.show(state);
     joints.show(scene, state);
     servo.show(state);
+    obstacles.place(state, target.dragged());
+    obstaclePanel.place(state);
+    distances.draw(scene, state, size);
     for (const panel of [pose, singular, screws]) panel.show(scene, state);
   };
   session.on("state", (state) => {
@@ -179,14 +206,11 @@ function start(): void {
     bar.link(link);
     banner.show(link, wait);
   });
-  overlays.onChange(() => {
-    if (session.scene && session.state) draw(session.scene, session.state);
-    stage.invalidate();
-  });
+  overlays.onChange(redraw);
   stage.onFrame(() => session.takeNewest());
   stage.onFrame(() => labels.place(stage.camera));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, target, robot, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
+  Object.assign(window, { viewer: { session, stage, target, robot, distances, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
 }
 
 try {

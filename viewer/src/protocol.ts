@@ -9,12 +9,19 @@ export type Screw = { point: Vec3 | null; direction: Vec3; pitch: number | null;
 
 // From the server ---------------------------------------------------------------------------------
 
-export type Visual = { pose: Pose; rgba: Colour } & (
+export type SimpleShape =
   | { kind: "box"; size: Vec3 }
   | { kind: "cylinder" | "capsule"; radius: number; length: number }
   | { kind: "sphere"; radius: number }
-  | { kind: "mesh"; url: string | null; format: "stl" | "dae" | "obj"; scale: Vec3; uri: string; problem: string | null }
-);
+  | { kind: "ellipsoid"; radii: Vec3 }
+  | { kind: "half_space" };
+export type MeshShape = {
+  kind: "mesh"; url: string | null; format: "stl" | "dae" | "obj"; scale: Vec3; uri: string; problem: string | null;
+};
+export type Visual = { pose: Pose; rgba: Colour } & (SimpleShape | MeshShape);
+export type Obstacle = { name: string } & (SimpleShape | MeshShape);
+/** Least distance, and the distance below which pairs count (m). */
+export type Avoidance = { gap: number; margin: number };
 export type Anchor = { name: string; kind: "joint" | "child" | "loop" | "contact" | "frame"; position: Vec3 };
 export type SceneLink = { name: string; visuals: Visual[]; anchors: Anchor[] };
 export type JointKind =
@@ -49,13 +56,15 @@ export type Scene = {
   actuators: Actuator[];
   self_motions: number; method: ChosenMethod; methods: Method[];
   overlays: OverlayInfo[]; reports: ReportName[];
-  home: number[]; ignored: number;
+  home: number[]; obstacles: Obstacle[]; avoidance: Avoidance | null; ignored: number;
 };
 
 export type ServoStatus = "moving" | "reached" | "stalled" | "paused" | "unavailable";
 export type Singular = {
   values: number[]; threshold: number; rank: number; gap: number | null; ratio: number; length: number;
 };
+export type Near = { a: string; b: string; distance: number; point_a: Vec3; point_b: Vec3 };
+export type Distances = { margin: number; shapes: number; pairs: number; near: Near[]; more: number };
 export type State = {
   type: "state";
   seq: number; time: number; ack: string | number | null; playing: boolean;
@@ -63,7 +72,7 @@ export type State = {
   error: { position: number; orientation: number };
   servo: {
     status: ServoStatus; reason: string | null; sentence: string;
-    limits: { coordinate: number; kind: string }[]; self_motion: number;
+    limits: { coordinate: number; kind: string }[]; pair: [string, string] | null; self_motion: number;
   };
   singular: Singular | null;
   outside_limits: number[];
@@ -71,6 +80,9 @@ export type State = {
   contacts: { point: Vec3; normal: Vec3; other: Vec3 }[];
   closure_error: { distance: number; angle: number; closed: boolean } | null;
   overlays: Partial<OverlayData>;
+  /** Poses in the order of the scene. */
+  obstacles: Pose[];
+  distances: Distances | null;
 };
 
 // Overlays ----------------------------------------------------------------------------------------
@@ -150,6 +162,11 @@ export type ToServer = { id?: string | number } & (
   | { type: "overlays"; names: OverlayName[] }
   | { type: "compare"; methods: string[]; point: Vec3; h: number | null; twist: number[] | null }
   | { type: "report"; name: ReportName }
+  | { type: "distances"; margin: number | null }
+  | ({ type: "add_obstacle"; name: string; shape: SimpleShape } & Pose)
+  | ({ type: "move_obstacle"; name: string } & Pose)
+  | { type: "remove_obstacle"; name: string }
+  | { type: "avoid_collisions"; on: boolean; gap: number | null; margin: number | null }
   /** This state has been drawn: the server holds back what a slow browser would only queue. */
   | { type: "seen"; seq: number }
 );

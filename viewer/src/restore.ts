@@ -15,6 +15,8 @@ export class Restore {
     private readonly overlays: Overlays,
     private readonly stage: Stage,
     private readonly say: (words: string, bad?: boolean) => void,
+    /** Called for every new session. */
+    private readonly begin: () => void,
   ) {
     this.read();
     addEventListener("hashchange", () => {
@@ -47,6 +49,7 @@ export class Restore {
     }
     this.last = null;
     this.session.send({ type: "overlays", names: this.overlays.names() });
+    this.begin();
     this.apply(scene);
   }
 
@@ -86,9 +89,23 @@ export class Restore {
     if (shot.actuated && scene.actuators.length > 0) session.send({ type: "actuated", names: shot.actuated });
     if (shot.method && JSON.stringify(shot.method) !== JSON.stringify(scene.method)) session.send({ type: "method", ...shot.method });
     if (shot.playing === false) session.send({ type: "pause" });
+    this.obstacles(shot, scene);
     session.send({ type: "configuration", q: shot.q });
     if (shot.target) session.send({ type: "target", ...shot.target });
     const known = new Set<string>(scene.overlays.map((info) => info.name));
     for (const name of shot.overlays ?? []) if (known.has(name)) this.overlays.show(name, true);
+  }
+
+  /** Obstacles of a new session come from its server: those of one name are moved. */
+  private obstacles(shot: Snapshot, scene: Scene): void {
+    const { session } = this;
+    const there = new Set(scene.obstacles.map(({ name }) => name));
+    for (const { name, shape, position, quaternion } of shot.obstacles ?? []) {
+      if (there.has(name)) session.send({ type: "move_obstacle", name, position, quaternion });
+      else session.send({ type: "add_obstacle", name, shape, position, quaternion });
+    }
+    const { avoidance } = shot;
+    if (avoidance) session.send({ type: "avoid_collisions", on: true, ...avoidance });
+    else if (avoidance === null && scene.avoidance) session.send({ type: "avoid_collisions", on: false, gap: null, margin: null });
   }
 }

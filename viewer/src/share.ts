@@ -1,11 +1,15 @@
 /** A configuration as the fragment of an address, and back. Nothing of it reaches a server by itself. */
-import type { ChosenMethod, OverlayName, Pose, Scene, State } from "./protocol";
+import type { Avoidance, ChosenMethod, OverlayName, Pose, Scene, SimpleShape, State } from "./protocol";
+
+/** Obstacles with meshes belong to the server, which has their files. */
+export type KeptObstacle = Pose & { name: string; shape: SimpleShape };
 
 export type Snapshot = {
   model: string;
   frame?: string; task?: string; actuated?: string[]; method?: ChosenMethod;
   q: number[]; target?: Pose; playing?: boolean;
   overlays?: OverlayName[];
+  obstacles?: KeptObstacle[]; avoidance?: Avoidance | null;
   camera?: number[];
 };
 
@@ -20,6 +24,13 @@ export function snapshot(scene: Scene, state: State, overlays: Iterable<OverlayN
     target: state.target,
     playing: state.playing,
     overlays: [...overlays],
+    obstacles: scene.obstacles.flatMap((obstacle, i) => {
+      const pose = state.obstacles[i];
+      if (obstacle.kind === "mesh" || !pose) return [];
+      const { name, ...shape } = obstacle;
+      return [{ name, shape, ...pose }];
+    }),
+    avoidance: scene.avoidance,
     camera,
   };
 }
@@ -35,6 +46,8 @@ export function fragment(shot: Snapshot): string {
   if (shot.target) fields.set("target", list([...shot.target.position, ...shot.target.quaternion]));
   if (shot.playing === false) fields.set("paused", "1");
   if (shot.overlays?.length) fields.set("show", shot.overlays.join(","));
+  if (shot.obstacles?.length) fields.set("obstacles", JSON.stringify(shot.obstacles));
+  if (shot.avoidance) fields.set("avoid", list([shot.avoidance.gap, shot.avoidance.margin]));
   if (shot.camera) fields.set("camera", list(shot.camera));
   return `#${fields.toString()}`;
 }
@@ -50,6 +63,8 @@ export function parse(hash: string): Snapshot | string | null {
   const camera = numbers(fields.get("camera"), 6);
   const actuated = names(fields.get("actuated"));
   const inverse = method(fields.get("inverse"));
+  const bodies = obstacles(fields.get("obstacles"));
+  const avoided = numbers(fields.get("avoid"), 2);
   return {
     model, q,
     ...(fields.has("frame") ? { frame: fields.get("frame") ?? "" } : {}),
@@ -59,6 +74,8 @@ export function parse(hash: string): Snapshot | string | null {
     ...(target ? { target: { position: target.slice(0, 3), quaternion: target.slice(3) } as Pose } : {}),
     playing: fields.get("paused") !== "1",
     overlays: (fields.get("show") ?? "").split(",").filter(Boolean) as OverlayName[],
+    ...(bodies ? { obstacles: bodies } : {}),
+    ...(avoided ? { avoidance: { gap: avoided[0] ?? 0, margin: avoided[1] ?? 0 } } : {}),
     ...(camera ? { camera } : {}),
   };
 }
@@ -80,6 +97,13 @@ function json(text: string | null): unknown {
 function names(text: string | null): string[] | null {
   const value = json(text);
   return Array.isArray(value) && value.every((name) => typeof name === "string") ? value : null;
+}
+
+/** The server checks shapes and poses. */
+function obstacles(text: string | null): KeptObstacle[] | null {
+  const value = json(text);
+  const isOne = (one: Partial<KeptObstacle> | null): boolean => typeof one?.name === "string" && typeof one.shape === "object";
+  return Array.isArray(value) && value.every(isOne) ? value as KeptObstacle[] : null;
 }
 
 function method(text: string | null): ChosenMethod | null {

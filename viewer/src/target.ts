@@ -1,4 +1,4 @@
-/** The target of the servo as a frame that can be dragged, and a second handle for a reference point. */
+/** The target of the servo as a frame that can be dragged; the handle also moves a reference point or an obstacle. */
 import { AxesHelper, type Box3, Color, Group, Mesh, Object3D, OctahedronGeometry, Vector3 } from "three";
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Pose, Scene, State, Vec3 } from "./protocol";
@@ -9,8 +9,12 @@ import { colour, onTheme } from "./theme";
 import { setPose } from "./robot/skeleton";
 
 export type Mode = "translate" | "rotate";
-export type Handle = "target" | "point";
-type Moved = { target: (pose: Pose) => void; point: (position: Vec3) => void };
+export type Handle = "target" | "point" | "obstacle";
+type Moved = {
+  target: (pose: Pose) => void; point: (position: Vec3) => void; obstacle: (name: string, pose: Pose) => void;
+  /** A drag has ended, and the states show its result. */
+  settled: () => void;
+};
 
 /** How long after a drag states may still be of before its end (ms). */
 const QUIET = 300;
@@ -18,6 +22,8 @@ const QUIET = 300;
 export class Target {
   mode: Mode = "translate";
   handle: Handle = "target";
+  /** The obstacle at the handle. */
+  obstacle: string | null = null;
   private readonly gizmo: TransformControls;
   private readonly target = new Object3D();
   private readonly point = new Object3D();
@@ -88,10 +94,27 @@ export class Target {
     this.stage.invalidate();
   }
 
-  setHandle(handle: Handle): void {
-    this.handle = handle;
+  setHandle(handle: "target" | "point"): void {
+    [this.handle, this.obstacle] = [handle, null];
     this.gizmo.attach(handle === "target" ? this.target : this.point);
     this.choose();
+  }
+
+  /** Puts the handle on an obstacle. */
+  hold(name: string, object: Object3D): void {
+    [this.handle, this.obstacle] = ["obstacle", name];
+    this.gizmo.attach(object);
+    this.choose();
+  }
+
+  /** The obstacle that is dragged: states may still be of before. */
+  dragged(): string | null {
+    return this.quiet ? this.obstacle : null;
+  }
+
+  /** True while the pointer is over the handle. */
+  isHovered(): boolean {
+    return this.gizmo.axis !== null;
   }
 
   showPoint(position: Vec3 | null): void {
@@ -105,6 +128,7 @@ export class Target {
     if (this.dragging) return;
     this.quiet = false;
     if (this.last) setPose(this.target, this.last);
+    this.moved.settled();
     this.stage.invalidate();
   }
 
@@ -112,7 +136,7 @@ export class Target {
   private choose(): void {
     const translate = this.handle === "point" || this.mode === "translate";
     const names = translate ? ["x", "y", "z"] : ["rx", "ry", "rz"];
-    const all = this.handle === "point" || this.task.length === 0;
+    const all = this.handle !== "target" || this.task.length === 0;
     this.gizmo.setMode(translate ? "translate" : "rotate");
     [this.gizmo.showX, this.gizmo.showY, this.gizmo.showZ] = names.map((n) => all || this.task.includes(n)) as [boolean, boolean, boolean];
     this.stage.invalidate();
@@ -123,8 +147,12 @@ export class Target {
       this.moved.point(this.point.position.toArray() as Vec3);
       return;
     }
-    const { x, y, z, w } = this.target.quaternion;
-    this.moved.target({ position: this.target.position.toArray() as Vec3, quaternion: [w, x, y, z] });
+    const object = this.handle === "obstacle" ? this.gizmo.object : this.target;
+    if (!object) return;
+    const { x, y, z, w } = object.quaternion;
+    const pose: Pose = { position: object.position.toArray() as Vec3, quaternion: [w, x, y, z] };
+    if (this.obstacle === null) this.moved.target(pose);
+    else this.moved.obstacle(this.obstacle, pose);
   }
 
   private paint(): void {

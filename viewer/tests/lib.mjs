@@ -283,7 +283,7 @@ export function apart(a, b) {
 }
 
 /**
- * Drags the target by the arrow of its handle that points along this way (or against it); gives where it was let go.
+ * Drags the target, or what else is at the handle, by the arrow that points along this way (or against it); gives where it was let go.
  * @param {Page} page
  * @param {[number, number, number]} way along an axis of the world (m)
  */
@@ -293,7 +293,7 @@ export async function drag(page, way) {
   const { from, to } = await page.evaluate((by) => {
     const { stage, target, project } = /** @type {any} */ (window).viewer;
     const box = stage.renderer.domElement.getBoundingClientRect();
-    const place = target.target.position;
+    const place = target.gizmo.object.position;
     const far = stage.camera.position.distanceTo(place);
     const size = (far * Math.min(1.9 * Math.tan((Math.PI * stage.camera.fov) / 360), 7) * target.gizmo.size) / 4;
     const grip = by.map((part, i) => place.getComponent(i) + (part === 0 ? 0 : 0.45 * size));
@@ -307,7 +307,7 @@ export async function drag(page, way) {
   await page.waitForTimeout(300); // the arrow under the pointer is found when it rests
   await page.mouse.down();
   for (let i = 1; i <= 6; i += 1) await page.mouse.move(from.x + ((to.x - from.x) * i) / 6, from.y + ((to.y - from.y) * i) / 6);
-  const place = await page.evaluate(() => /** @type {number[]} */ (/** @type {any} */ (window).viewer.target.target.position.toArray()));
+  const place = await page.evaluate(() => /** @type {number[]} */ (/** @type {any} */ (window).viewer.target.gizmo.object.position.toArray()));
   await page.mouse.up();
   return place;
 }

@@ -3,7 +3,7 @@ import { fill, h } from "../dom";
 import { icon } from "../icons";
 import type { Scene } from "../protocol";
 import type { Stage, View } from "../scene/stage";
-import type { Handle, Mode, Target } from "../target";
+import type { Mode, Target } from "../target";
 
 const VIEWS: View[] = ["corner", "front", "side", "top"];
 
@@ -15,7 +15,8 @@ export class Tools {
   private inTool = false;
   private turns = true;
 
-  constructor(tools: HTMLElement, private readonly target: Target, stage: Stage, fit: () => void) {
+  /** `released` is called when the handle is back on the target. */
+  constructor(tools: HTMLElement, private readonly target: Target, stage: Stage, fit: () => void, private readonly released: () => void) {
     this.space = h("button", { class: "button small", type: "button", "aria-pressed": "false", title: "Drag along the axes of the tool (X)", onclick: () => this.swapSpace() }, "tool axes");
     tools.append(
       h("span", { class: "float-row" }, this.modes, this.space, this.handles),
@@ -28,7 +29,8 @@ export class Tools {
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || isTyping(event.target)) return;
       if (event.key === "w") this.setMode("translate");
-      else if (event.key === "e" && this.turns) this.setMode("rotate");
+      else if (event.key === "e" && this.mayTurn()) this.setMode("rotate");
+      else if (event.key === "Escape") this.handle("target");
       else if (event.key === "x") this.swapSpace();
       else if (event.key === "f") fit();
     });
@@ -37,7 +39,23 @@ export class Tools {
 
   build(scene: Scene): void {
     this.turns = scene.task.components.some((name) => name.startsWith("r"));
-    if (!this.turns && this.target.mode === "rotate") this.target.setMode("translate");
+    if (!this.mayTurn() && this.target.mode === "rotate") this.target.setMode("translate");
+    this.paint();
+  }
+
+  /** Shows on which obstacle the handle is. */
+  held(): void {
+    this.paint();
+  }
+
+  private mayTurn(): boolean {
+    return this.turns || this.target.handle === "obstacle";
+  }
+
+  private handle(handle: "target" | "point"): void {
+    this.target.setHandle(handle);
+    if (!this.mayTurn() && this.target.mode === "rotate") this.target.setMode("translate");
+    this.released();
     this.paint();
   }
 
@@ -45,7 +63,7 @@ export class Tools {
   offerPoint(there: boolean): void {
     if (this.hasPoint === there) return;
     this.hasPoint = there;
-    if (!there) this.target.setHandle("target");
+    if (!there && this.target.handle === "point") this.target.setHandle("target");
     this.paint();
   }
 
@@ -63,17 +81,21 @@ export class Tools {
   private paint(): void {
     const modes: [Mode, "move" | "rotate", string, boolean][] = [
       ["translate", "move", "Move (W)", true],
-      ["rotate", "rotate", "Rotate (E)", this.turns],
+      ["rotate", "rotate", "Rotate (E)", this.mayTurn()],
     ];
     fill(this.modes, ...modes.map(([mode, name, label, there]) =>
       h("button", { class: "button small", type: "button", "aria-pressed": String(this.target.mode === mode), disabled: !there, title: label, onclick: () => this.setMode(mode) }, icon(name), label.split(" ")[0] ?? "")));
     this.space.setAttribute("aria-pressed", String(this.inTool));
-    const handles: [Handle, string][] = [["target", "target"], ["point", "reference point"]];
-    fill(this.handles, ...(this.hasPoint ? handles.map(([handle, label]) =>
-      h("button", { class: "button small", type: "button", "aria-pressed": String(this.target.handle === handle), onclick: () => {
-        this.target.setHandle(handle);
-        this.paint();
-      } }, label)) : []));
+    const { handle: now, obstacle } = this.target;
+    const button = (label: string, pressed: boolean, choose: () => void): HTMLElement =>
+      h("button", { class: "button small", type: "button", "aria-pressed": String(pressed), onclick: choose }, label);
+    const there = this.hasPoint || obstacle !== null;
+    fill(
+      this.handles,
+      there && button("target", now === "target", () => this.handle("target")),
+      this.hasPoint && button("reference point", now === "point", () => this.handle("point")),
+      obstacle !== null && button(obstacle, true, () => undefined),
+    );
   }
 }
 

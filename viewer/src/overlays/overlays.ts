@@ -77,7 +77,7 @@ export class Overlays {
       this.group.add(group);
       lines.push(legendLine(info, words));
     }
-    this.labels.set(labels);
+    this.labels.set("overlays", labels);
     fill(this.legend, ...lines);
   }
 

@@ -1,14 +1,14 @@
 /** Shapes of the model's files: simple bodies, and meshes that the server hands out. */
 import {
   BoxGeometry, CapsuleGeometry, Color, CylinderGeometry, FileLoader, Group, Mesh, MeshStandardMaterial,
-  Quaternion, SphereGeometry, type BufferGeometry, type Object3D,
+  PlaneGeometry, Quaternion, SphereGeometry, type BufferGeometry, type Material, type Object3D,
 } from "three";
 import { ColladaLoader } from "three/addons/loaders/ColladaLoader.js";
 import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import type { Colour, Visual } from "../protocol";
+import type { Colour, MeshShape, Obstacle, SimpleShape, Visual } from "../protocol";
 import { solid } from "../scene/palette";
 import { setPose } from "./skeleton";
 
@@ -16,7 +16,10 @@ import { setPose } from "./skeleton";
 const CREASE = 0.6;
 const SMOOTHED = 300_000;
 
-type MeshVisual = Extract<Visual, { kind: "mesh" }>;
+/** The side of the square that stands for a plane (m). */
+const PLANE = 10;
+
+type MeshVisual = MeshShape & { rgba: Colour };
 const loaded = new Map<string, Promise<Object3D>>();
 
 function material(rgba: Colour): MeshStandardMaterial {
@@ -50,7 +53,20 @@ export async function visualBody(visual: Visual): Promise<Object3D> {
   return holder;
 }
 
-function simple(visual: Exclude<Visual, MeshVisual>): BufferGeometry {
+/** The body of an obstacle. Rejects with a sentence where its mesh is not to be had. */
+export async function obstacleBody(obstacle: Obstacle, paint: Material): Promise<Object3D> {
+  if (obstacle.kind !== "mesh") return new Mesh(simple(obstacle), paint);
+  const body = await mesh({ ...obstacle, rgba: null });
+  body.scale.multiply({ x: obstacle.scale[0], y: obstacle.scale[1], z: obstacle.scale[2] });
+  body.traverse((part) => {
+    if (part instanceof Mesh) part.material = paint;
+  });
+  const holder = new Group();
+  holder.add(body);
+  return holder;
+}
+
+function simple(visual: SimpleShape): BufferGeometry {
   switch (visual.kind) {
     case "box":
       return new BoxGeometry(...visual.size);
@@ -60,6 +76,10 @@ function simple(visual: Exclude<Visual, MeshVisual>): BufferGeometry {
       return upright(new CapsuleGeometry(visual.radius, visual.length, 10, 32));
     case "sphere":
       return new SphereGeometry(visual.radius, 36, 24);
+    case "ellipsoid":
+      return new SphereGeometry(1, 36, 24).scale(...visual.radii);
+    case "half_space":
+      return new PlaneGeometry(PLANE, PLANE);
   }
 }
 

@@ -7,21 +7,23 @@ export type Label = { text: string; at: Vector3; colour: string };
 export class Labels {
   private readonly layer = h("div", { class: "labels", "aria-hidden": "true" });
   private readonly elements: HTMLElement[] = [];
-  private labels: Label[] = [];
+  private readonly all = new Map<string, Label[]>();
 
   constructor(private readonly stage: HTMLElement) {
     stage.append(this.layer);
   }
 
-  set(labels: Label[]): void {
-    this.labels = labels;
+  /** The labels of one source, in place of its last ones. */
+  set(source: string, labels: Label[]): void {
+    this.all.set(source, labels);
   }
 
   /** Puts every label where its point is seen now. */
   place(camera: PerspectiveCamera): void {
     const { clientWidth: width, clientHeight: height } = this.stage;
     const taken: { x: number; y: number; w: number }[] = [];
-    this.labels.forEach((label, i) => {
+    const labels = [...this.all.values()].flat();
+    labels.forEach((label, i) => {
       const element = this.element(i);
       const seen = label.at.clone().project(camera);
       const [x, y] = [((seen.x + 1) / 2) * width, ((1 - seen.y) / 2) * height];
@@ -35,7 +37,7 @@ export class Labels {
       element.style.transform = `translate(${Math.round(x + 7)}px, ${Math.round(y - 9)}px)`;
       element.style.setProperty("--swatch", `var(--${label.colour})`);
     });
-    this.elements.slice(this.labels.length).forEach((element) => {
+    this.elements.slice(labels.length).forEach((element) => {
       element.hidden = true;
     });
   }

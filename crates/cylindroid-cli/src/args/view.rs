@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::{ConfigurationArgs, FrameArgs, LimitsArgs};
+use crate::obstacle::ObstacleArg;
 
 pub(crate) const ABOUT: &str = "\
 The web viewer: display a model, drag its tool or object, and monitor its measures
@@ -20,7 +21,10 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   cylindroid view panda
   cylindroid view five-bar --actuated q2,q4 --port 8080
-  cylindroid view ur5e --q 0,-1.2,1.4,0,1.5,0 --check";
+  cylindroid view ur5e --q 0,-1.2,1.4,0,1.5,0 --check
+  cylindroid view docs/cell.toml --obstacle ball=sphere:0.1@0.5,0,0.4
+
+Obstacles are given as in `distance`.";
 
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
@@ -49,6 +53,18 @@ pub(crate) struct ViewArgs {
     /// Additional folder from which meshes may be served; repeatable
     #[arg(long, value_name = "FOLDER")]
     pub(crate) meshes: Vec<PathBuf>,
+
+    /// Keep links at a distance from each other and from obstacles
+    #[arg(long)]
+    pub(crate) avoid: bool,
+
+    /// An obstacle in the world, as in `distance`; repeatable. Distances are kept, as with --avoid
+    #[arg(long, value_name = "NAME=SHAPE@POSE", allow_hyphen_values = true)]
+    pub(crate) obstacle: Vec<ObstacleArg>,
+
+    /// SRDF whose `disable_collisions` name pairs of links that are not watched
+    #[arg(long, value_name = "FILE")]
+    pub(crate) srdf: Option<PathBuf>,
 
     /// Start, print the URL and exit
     #[arg(long)]

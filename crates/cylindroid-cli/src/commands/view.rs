@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use cylindroid::Result;
+use cylindroid::model::formats::srdf;
 use serde::Serialize;
 
 use crate::args::ViewArgs;
 use crate::commands::shared::{
     Style, all_actuated, configuration, end_effector, limited, load, within_limits,
 };
-use crate::viewer::{Server, Start, page_is_built};
+use crate::viewer::{Server, Start, StartBodies, check_count, page_is_built};
 
 #[derive(Debug, Serialize)]
 struct ViewJson<'a> {
@@ -78,5 +79,15 @@ fn start(args: &ViewArgs) -> Result<Start> {
     if args.frame.frame.is_none() && robot.is_closed() {
         tool.frame = robot.reference();
     }
-    Start::new((robot, &args.configuration.model), &q, tool, &args.meshes)
+    check_count(args.obstacle.len())?;
+    let disabled = match &args.srdf {
+        Some(path) => srdf::load(path)?.pairs(&robot),
+        None => Vec::new(),
+    };
+    let bodies = StartBodies {
+        avoid: args.avoid || !args.obstacle.is_empty(),
+        obstacles: args.obstacle.clone(),
+        disabled,
+    };
+    Start::new((robot, &args.configuration.model), &q, tool, &args.meshes, bodies)
 }

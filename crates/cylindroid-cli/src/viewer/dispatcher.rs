@@ -3,13 +3,19 @@
 use cylindroid::{Error, Result};
 use serde_json::Value;
 
+use super::avoidance::{GAP, MARGIN};
 use super::compare::compare;
 use super::inverse_parameters::invert_by;
-use super::messages::{Complaint, Message, Request};
+use super::messages::{Complaint, Message, Request, TargetPose};
 use super::names::Overlay;
+use super::obstacle_messages::{AddObstacle, AvoidCollisions, MoveObstacle};
 use super::reaching::{Reached, assembled, reach};
 use super::reports::Report;
 use super::session::Session;
+use crate::obstacle::ObstacleArg;
+
+/// Longest name of an obstacle, in characters.
+const LONGEST_NAME: usize = 60;
 
 /// The answer to a message.
 #[derive(Debug)]
@@ -93,7 +99,44 @@ fn obey(
         Message::Report(asked) => {
             return Report::new(session, &asked.name, id).map(Reply::Report);
         }
+        Message::Distances(asked) => {
+            session.show_distances(asked.margin).map_err(at("distances.margin"))?;
+        }
+        Message::AddObstacle(asked) => {
+            let obstacle = obstacle(asked)?;
+            session.add_obstacle(obstacle).map_err(at("add_obstacle"))?;
+            return Ok(Reply::Scene);
+        }
+        Message::MoveObstacle(MoveObstacle { name, position, quaternion }) => {
+            let pose = TargetPose { position, quaternion }.pose("move_obstacle")?;
+            session.move_obstacle(&name, pose).map_err(at("move_obstacle.name"))?;
+        }
+        Message::RemoveObstacle(obstacle) => {
+            session.remove_obstacle(&obstacle.name).map_err(at("remove_obstacle.name"))?;
+            return Ok(Reply::Scene);
+        }
+        Message::AvoidCollisions(AvoidCollisions { on, gap, margin }) => {
+            let distances = (gap.unwrap_or(GAP), margin.unwrap_or(MARGIN));
+            session.avoid(on.then_some(distances)).map_err(at("avoid_collisions"))?;
+            return Ok(Reply::Scene);
+        }
         Message::Seen(seen) => return Ok(Reply::Seen(seen.seq)),
     }
     Ok(Reply::Nothing)
+}
+
+/// The obstacle of a message.
+fn obstacle(asked: AddObstacle) -> std::result::Result<ObstacleArg, Complaint> {
+    let AddObstacle { name, shape, position, quaternion } = asked;
+    if name.trim().is_empty() || name.chars().count() > LONGEST_NAME {
+        let what = format!("an obstacle has a name of 1 to {LONGEST_NAME} characters");
+        return Err(Complaint::new("add_obstacle.name", &name, &what, "give another name"));
+    }
+    if let Some((field, length)) = shape.faulty_length() {
+        let (place, length) = (format!("add_obstacle.shape.{field}"), length.to_string());
+        let what = format!("{field} = {length} m is not positive");
+        return Err(Complaint::new(&place, &length, &what, "give a positive length"));
+    }
+    let world_from_shape = TargetPose { position, quaternion }.pose("add_obstacle")?;
+    Ok(ObstacleArg { name, shape: shape.geometry(), world_from_shape })
 }

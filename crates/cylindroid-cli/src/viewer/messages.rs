@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use cylindroid::Error;
+use cylindroid::spatial::Quaternion;
+use cylindroid::{Error, Pose, Vec3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
+
+use super::obstacle_messages::{AddObstacle, AvoidCollisions, Distances, MoveObstacle};
 
 /// Maximum message size [bytes].
 pub(super) const LARGEST: usize = 64 * 1024;
@@ -34,10 +37,15 @@ pub(super) enum Message {
     Overlays(Names),
     Compare(Compare),
     Report(Name),
+    Distances(Distances),
+    AddObstacle(AddObstacle),
+    MoveObstacle(MoveObstacle),
+    RemoveObstacle(Name),
+    AvoidCollisions(AvoidCollisions),
     Seen(Seen),
 }
 
-const TYPES: [&str; 15] = [
+const TYPES: [&str; 20] = [
     "joint",
     "configuration",
     "target",
@@ -52,6 +60,11 @@ const TYPES: [&str; 15] = [
     "overlays",
     "compare",
     "report",
+    "distances",
+    "add_obstacle",
+    "move_obstacle",
+    "remove_obstacle",
+    "avoid_collisions",
     "seen",
 ];
 
@@ -127,6 +140,21 @@ pub(super) struct Compare {
 #[serde(deny_unknown_fields)]
 pub(super) struct Seen {
     pub(super) seq: u64,
+}
+
+impl TargetPose {
+    /// The pose; an error names the field of the message `kind`.
+    pub(super) fn pose(&self, kind: &str) -> Result<Pose, Complaint> {
+        let [w, x, y, z] = self.quaternion;
+        let rotation = Quaternion { w, x, y, z }
+            .rotation()
+            .map_err(|error| Complaint::of(&format!("{kind}.quaternion"), &error))?;
+        let translation = Vec3::from_array(self.position);
+        // Distances must not overflow.
+        Error::check_finite(&format!("position of {kind}"), &[translation.norm()])
+            .map_err(|error| Complaint::of(&format!("{kind}.position"), &error))?;
+        Ok(Pose { rotation, translation })
+    }
 }
 
 /// An error in a message.

@@ -37,7 +37,22 @@ pub(super) struct Scene<'a> {
     overlays: Vec<OverlayJson>,
     reports: [&'static str; 4],
     home: &'a [f64],
+    obstacles: Vec<ObstacleJson<'a>>,
+    avoidance: Option<AvoidanceJson>,
     ignored: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct ObstacleJson<'a> {
+    name: &'a str,
+    #[serde(flatten)]
+    shape: ShapeJson<'a>,
+}
+
+#[derive(Debug, Serialize)]
+struct AvoidanceJson {
+    gap: f64,
+    margin: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -56,7 +71,7 @@ struct VisualJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
+#[serde(tag = "kind", rename_all = "snake_case")]
 enum ShapeJson<'a> {
     Box {
         size: [f64; 3],
@@ -72,6 +87,10 @@ enum ShapeJson<'a> {
     Sphere {
         radius: f64,
     },
+    Ellipsoid {
+        radii: [f64; 3],
+    },
+    HalfSpace,
     Mesh {
         url: Option<String>,
         format: Option<&'static str>,
@@ -258,6 +277,8 @@ impl<'a> Scene<'a> {
             overlays: Overlay::ALL.into_iter().map(overlay).collect(),
             reports: REPORTS,
             home: session.home(),
+            obstacles: obstacles(session),
+            avoidance: session.avoided().map(|(gap, margin)| AvoidanceJson { gap, margin }),
             ignored: mechanism.report().ignored.len(),
         }
     }
@@ -319,35 +340,45 @@ fn links(session: &Session) -> Vec<LinkJson<'_>> {
 }
 
 fn visuals<'a>(session: &'a Session, link: &'a Link) -> Vec<VisualJson<'a>> {
-    // None: a kind of shape that the page cannot draw.
-    let shape = |v: &'a Visual| {
-        Some(match &v.geometry {
-            Geometry::Box { size } => ShapeJson::Box { size: size.to_array() },
-            Geometry::Cylinder { radius, length } => {
-                ShapeJson::Cylinder { radius: *radius, length: *length }
-            }
-            Geometry::Capsule { radius, length } => {
-                ShapeJson::Capsule { radius: *radius, length: *length }
-            }
-            Geometry::Sphere { radius } => ShapeJson::Sphere { radius: *radius },
-            Geometry::Mesh { uri, path, scale } => {
-                let served = session.folders().served(uri, path.as_deref());
-                ShapeJson::Mesh {
-                    url: served.url,
-                    format: served.format,
-                    scale: scale.to_array(),
-                    uri,
-                    problem: served.problem,
-                }
-            }
-            _ => return None,
-        })
-    };
     let visual = |v: &'a Visual| {
         let (pose, rgba) = (v.link_from_shape.into(), v.rgba);
-        Some(VisualJson { shape: shape(v)?, pose, rgba })
+        Some(VisualJson { shape: shape(session, &v.geometry)?, pose, rgba })
     };
     link.visuals.iter().filter_map(visual).collect()
+}
+
+fn obstacles(session: &Session) -> Vec<ObstacleJson<'_>> {
+    let all = session.obstacles().iter();
+    // Arguments and messages have no other shapes.
+    all.filter_map(|o| Some(ObstacleJson { name: &o.name, shape: shape(session, &o.shape)? }))
+        .collect()
+}
+
+/// `None`: a kind of shape that the page cannot draw.
+fn shape<'a>(session: &'a Session, geometry: &'a Geometry) -> Option<ShapeJson<'a>> {
+    Some(match geometry {
+        Geometry::Box { size } => ShapeJson::Box { size: size.to_array() },
+        Geometry::Cylinder { radius, length } => {
+            ShapeJson::Cylinder { radius: *radius, length: *length }
+        }
+        Geometry::Capsule { radius, length } => {
+            ShapeJson::Capsule { radius: *radius, length: *length }
+        }
+        Geometry::Sphere { radius } => ShapeJson::Sphere { radius: *radius },
+        Geometry::Ellipsoid { radii } => ShapeJson::Ellipsoid { radii: radii.to_array() },
+        Geometry::HalfSpace => ShapeJson::HalfSpace,
+        Geometry::Mesh { uri, path, scale } => {
+            let served = session.folders().served(uri, path.as_deref());
+            ShapeJson::Mesh {
+                url: served.url,
+                format: served.format,
+                scale: scale.to_array(),
+                uri,
+                problem: served.problem,
+            }
+        }
+        _ => return None,
+    })
 }
 
 /// The link of the reference frame, then the other links in contact.

@@ -5,19 +5,22 @@
 use std::sync::Arc;
 
 use cylindroid::closure::frame_twists;
-use cylindroid::control::{Stall, Status, Step, Target};
+use cylindroid::collision::CollisionModel;
+use cylindroid::control::{CollisionAvoidance, LimitKind, Status, Target};
 use cylindroid::ik::Task;
 use cylindroid::model::FrameId;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
-use cylindroid::spatial::Quaternion;
-use cylindroid::{Error, Mechanism, Pose, Result, Servo, ServoOptions, State, Vec3};
+use cylindroid::{Error, Mechanism, Pose, Result, Servo, ServoOptions, State};
 use serde_json::Value;
 
 use super::assets::Folders;
+use super::avoidance::{Avoidance, GAP, LastStep, MARGIN};
+use super::bodies::{Bodies, DistancesJson};
 use super::inverse_parameters::Chosen;
 use super::messages::{Complaint, NullSpace, TargetPose};
 use super::names::Overlay;
 use super::start::Start;
+use crate::obstacle::ObstacleArg;
 
 /// Servo steps per second of its clock.
 pub(super) const STEPS: u32 = 120;
@@ -40,9 +43,13 @@ pub(super) struct Session {
     is_playing: bool,
     /// True if another step would change nothing.
     is_resting: bool,
-    last: Option<(Step, Option<Stall>)>,
+    last: Option<LastStep>,
     self_motion: Option<SelfMotion>,
     overlays: Vec<Overlay>,
+    bodies: Bodies,
+    /// Least distance and margin (m), if collisions are avoided, and the servo that does, or the
+    /// reason why there is none.
+    avoidance: Option<((f64, f64), Result<Avoidance>)>,
     /// Clock of the servo, in steps.
     steps: u64,
     ack: Option<Value>,
@@ -67,7 +74,7 @@ impl Session {
         options.secondary = options.default_secondary(&mechanism)?;
         let state = mechanism.state(&start.q)?;
         let method = Chosen::plain(options.method);
-        Ok(Self {
+        let mut session = Self {
             target: state.pose(options.end_effector),
             servo: Servo::new(&mechanism, options.clone()),
             trouble: None,
@@ -78,6 +85,8 @@ impl Session {
             last: None,
             self_motion: None,
             overlays: Vec::new(),
+            bodies: Bodies::new(&start),
+            avoidance: None,
             steps: 0,
             ack: None,
             method,
@@ -85,7 +94,12 @@ impl Session {
             state,
             mechanism,
             start,
-        })
+        };
+        if session.start.bodies.avoid {
+            session.avoid(Some((GAP, MARGIN)))?;
+            session.is_resting = true;
+        }
+        Ok(session)
     }
 
     pub(super) fn mechanism(&self) -> &Mechanism {
@@ -126,7 +140,8 @@ impl Session {
 
     /// Why there is no servo, or why it cannot continue.
     pub(super) fn fault(&self) -> Option<&Error> {
-        self.servo.as_ref().err().or(self.trouble.as_ref())
+        let avoidance = self.avoidance.as_ref().and_then(|(_, servo)| servo.as_ref().err());
+        self.servo.as_ref().err().or(avoidance).or(self.trouble.as_ref())
     }
 
     pub(super) fn target(&self) -> Pose {
@@ -137,8 +152,38 @@ impl Session {
         self.is_playing
     }
 
-    pub(super) fn last(&self) -> Option<&(Step, Option<Stall>)> {
+    pub(super) fn last(&self) -> Option<&LastStep> {
         self.last.as_ref()
+    }
+
+    /// The limits that bounded a joint velocity in the last step.
+    pub(super) fn active_limits(&self) -> Vec<(usize, LimitKind)> {
+        match (&self.servo, &self.avoidance) {
+            // A servo that has not stepped since it was stopped has no joint velocities.
+            _ if self.last.is_none() => Vec::new(),
+            (_, Some((_, Ok(avoidance)))) => avoidance.active_limits().collect(),
+            (Ok(servo), None) => servo.active_limits().collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Least distance and margin (m), if collisions are avoided.
+    pub(super) fn avoided(&self) -> Option<(f64, f64)> {
+        self.avoidance.as_ref().map(|(distances, _)| *distances)
+    }
+
+    pub(super) fn obstacles(&self) -> &[ObstacleArg] {
+        self.bodies.obstacles()
+    }
+
+    /// Finds the near pairs of the state, if they are asked for.
+    pub(super) fn find_near(&mut self) -> Result<()> {
+        self.bodies.find_near(&self.state)
+    }
+
+    /// The near pairs that were found, if they are asked for.
+    pub(super) fn distances(&self) -> Option<DistancesJson<'_>> {
+        self.bodies.distances()
     }
 
     /// Speed of the self-motion relative to the joint velocity limits.
@@ -170,7 +215,8 @@ impl Session {
 
     /// True while steps change the state.
     pub(super) fn is_moving(&self) -> bool {
-        self.is_playing && self.servo.is_ok() && !self.is_resting
+        let avoids = self.avoidance.as_ref().is_none_or(|(_, servo)| servo.is_ok());
+        self.is_playing && self.servo.is_ok() && avoids && !self.is_resting
     }
 
     /// Executes this many servo steps, fewer if it comes to rest; false if nothing visible changed.
@@ -201,22 +247,41 @@ impl Session {
             }
             desired = own.motion.iter().map(|x| own.rate * x).collect();
         }
-        let step = servo.step_with(q, Target::from(self.target), &desired)?;
-        let stall = (step.status == Status::Stalled).then(|| servo.stall());
-        servo.advance(q);
+        let (last, still) = match &mut self.avoidance {
+            Some((_, Ok(avoidance))) => {
+                let last = avoidance.step(servo, q, self.target, &desired)?;
+                (last, avoidance.joint_velocities().iter().all(|rate| rate.abs() < REST))
+            }
+            _ => {
+                let status = servo.step_with(q, Target::from(self.target), &desired)?.status;
+                let stall = (status == Status::Stalled).then(|| servo.stall());
+                servo.advance(q);
+                let still = servo.joint_velocities().iter().all(|rate| rate.abs() < REST);
+                (LastStep { status, stall, pair: None }, still)
+            }
+        };
         self.steps += 1;
-        let still = servo.joint_velocities().iter().all(|rate| rate.abs() < REST);
-        let ended = match step.status {
+        let ended = match last.status {
             Status::Moving => false,
             Status::Reached => still,
             Status::Stalled => true,
         };
         if ended && self.self_motion.is_none() {
             self.is_resting = true;
+            self.rest();
+        }
+        self.last = Some(last);
+        Ok(())
+    }
+
+    /// Sets the velocities of the servo to zero.
+    fn rest(&mut self) {
+        if let Ok(servo) = &mut self.servo {
             servo.reset();
         }
-        self.last = Some((step, stall));
-        Ok(())
+        if let Some((_, Ok(avoidance))) = &mut self.avoidance {
+            avoidance.reset();
+        }
     }
 
     /// Stores the id of a message for the next state.
@@ -256,9 +321,7 @@ impl Session {
 
     pub(super) fn pause(&mut self) {
         self.is_playing = false;
-        if let Ok(servo) = &mut self.servo {
-            servo.reset();
-        }
+        self.rest();
     }
 
     /// Returns to the initial configuration.
@@ -282,21 +345,11 @@ impl Session {
     fn wake(&mut self) {
         (self.last, self.trouble) = (None, None);
         self.is_resting = false;
-        if let Ok(servo) = &mut self.servo {
-            servo.reset();
-        }
+        self.rest();
     }
 
     pub(super) fn aim(&mut self, desired: &TargetPose) -> std::result::Result<(), Complaint> {
-        let [w, x, y, z] = desired.quaternion;
-        let rotation = Quaternion { w, x, y, z }
-            .rotation()
-            .map_err(|error| Complaint::of("target.quaternion", &error))?;
-        let translation = Vec3::from_array(desired.position);
-        // The distance must not overflow.
-        Error::check_finite("target position", &[translation.norm()])
-            .map_err(|error| Complaint::of("target.position", &error))?;
-        self.target = Pose { rotation, translation };
+        self.target = desired.pose("target")?;
         // Velocities are kept, so that a dragged target is followed smoothly.
         (self.last, self.trouble) = (None, None);
         self.is_resting = false;
@@ -310,7 +363,56 @@ impl Session {
         self.servo = Servo::new(&self.mechanism, options.clone());
         self.options = options;
         self.self_motion = None;
+        self.avoid(self.avoided())
+    }
+
+    /// Avoids collisions with this least distance and margin (m), or does not.
+    pub(super) fn avoid(&mut self, distances: Option<(f64, f64)>) -> Result<()> {
+        self.avoidance = match distances {
+            None => None,
+            Some(distances @ (gap, margin)) => {
+                CollisionAvoidance::check_distances(gap, margin)?;
+                let model = self.bodies.model(&self.start)?.clone();
+                let (mechanism, options, target) = (&self.mechanism, &self.options, self.target);
+                let servo = Avoidance::new(mechanism, options, target, model, distances);
+                Some((distances, servo))
+            }
+        };
         self.wake();
+        Ok(())
+    }
+
+    /// Includes pairs closer than `margin` (m) in the states, or none.
+    pub(super) fn show_distances(&mut self, margin: Option<f64>) -> Result<()> {
+        self.bodies.show(&self.start, margin)
+    }
+
+    pub(super) fn add_obstacle(&mut self, obstacle: ObstacleArg) -> Result<()> {
+        self.bodies.add(&self.start, obstacle.clone())?;
+        let ObstacleArg { name, shape, world_from_shape } = obstacle;
+        self.change_avoided(|model| model.add_obstacle(&name, &shape, world_from_shape))
+    }
+
+    pub(super) fn move_obstacle(&mut self, name: &str, pose: Pose) -> Result<()> {
+        self.bodies.move_to(&self.start, name, pose)?;
+        self.change_avoided(|model| model.move_obstacle(name, pose))
+    }
+
+    pub(super) fn remove_obstacle(&mut self, name: &str) -> Result<()> {
+        self.bodies.remove(&self.start, name)?;
+        self.change_avoided(|model| model.remove_obstacle(name))
+    }
+
+    /// Changes the obstacles of the servo, which continues.
+    fn change_avoided(
+        &mut self,
+        change: impl FnOnce(&mut CollisionModel) -> Result<()>,
+    ) -> Result<()> {
+        if let Some((_, Ok(avoidance))) = &mut self.avoidance {
+            avoidance.model_mut().map_or(Ok(()), change)?;
+            (self.last, self.trouble) = (None, None);
+            self.is_resting = false;
+        }
         Ok(())
     }
 
@@ -372,8 +474,7 @@ impl Session {
         let servo = Servo::new(&mechanism, self.options.clone());
         (self.mechanism, self.state, self.servo) = (mechanism, state, servo);
         self.self_motion = None;
-        self.wake();
-        Ok(())
+        self.avoid(self.avoided()).map_err(at)
     }
 
     /// The screw system of the tool: of the joints of a tree, or of the motions of the object of a

@@ -8,6 +8,7 @@ use cylindroid::{Pose, Result};
 use serde::Serialize;
 use serde_json::Value;
 
+use super::bodies::DistancesJson;
 use super::json::{PoseJson, text};
 use super::measures::Measures;
 use super::overlays::{Shown, shown};
@@ -33,6 +34,8 @@ struct StateJson<'a> {
     contacts: Vec<ContactJson>,
     closure_error: Option<ClosureErrorJson>,
     overlays: BTreeMap<&'static str, Shown>,
+    obstacles: Vec<PoseJson>,
+    distances: Option<DistancesJson<'a>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -47,6 +50,7 @@ struct ServoJson {
     reason: Option<&'static str>,
     sentence: String,
     limits: Vec<LimitJson>,
+    pair: Option<[String; 2]>,
     self_motion: f64,
 }
 
@@ -90,6 +94,7 @@ struct ClosureErrorJson {
 pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
     let servo = servo(session);
     let measures = Measures::of(session);
+    session.find_near()?;
     let session = &*session;
     let (mechanism, state, options) = (session.mechanism(), session.state(), session.options());
     let poses: Vec<Pose> = mechanism
@@ -142,15 +147,19 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
             closed: g.is_closed(mechanism.reach()),
         }),
         overlays: overlays.map(|o| (o.name(), shown(*o, session, measures.as_ref()))).collect(),
+        obstacles: session.obstacles().iter().map(|o| o.world_from_shape.into()).collect(),
+        distances: session.distances(),
     }))
 }
 
 fn servo(session: &Session) -> ServoJson {
+    let last = session.last();
     let told = |status, reason, sentence: String| ServoJson {
         status,
         reason,
         sentence,
         limits: limits(session),
+        pair: last.and_then(|last| last.pair.clone()),
         self_motion: session.self_motion(),
     };
     if let Some(fault) = session.fault() {
@@ -159,28 +168,33 @@ fn servo(session: &Session) -> ServoJson {
     if !session.is_playing() {
         return told("paused", None, "The servo is paused.".to_owned());
     }
-    match session.last() {
-        Some((step, stall)) => match (step.status, stall) {
-            (Status::Reached, _) => told("reached", None, "The target is reached.".to_owned()),
-            (Status::Stalled, Some(stall)) => {
-                let (mechanism, q) = (session.mechanism(), session.state().q());
-                let why = cause(mechanism, session.options().task, q, stall);
-                told("stalled", Some(stall.name()), why)
-            }
-            _ => told("moving", None, "Moving to the target.".to_owned()),
-        },
-        None if session.is_resting() => {
-            told("reached", None, "The target is at the tool.".to_owned())
+    let Some(last) = last else {
+        return match session.is_resting() {
+            true => told("reached", None, "The target is at the tool.".to_owned()),
+            false => told("moving", None, "Moving to the target.".to_owned()),
+        };
+    };
+    match (last.status, &last.pair, &last.stall) {
+        (Status::Reached, ..) => told("reached", None, "The target is reached.".to_owned()),
+        (Status::Stalled, Some([a, b]), _) => {
+            let why = format!("{a} and {b} must not come closer: their distance stops the motion.");
+            told("stalled", Some("distance"), why)
         }
-        None => told("moving", None, "Moving to the target.".to_owned()),
+        (Status::Stalled, None, Some(stall)) => {
+            let (mechanism, q) = (session.mechanism(), session.state().q());
+            let why = cause(mechanism, session.options().task, q, stall);
+            told("stalled", Some(stall.name()), why)
+        }
+        (_, Some([a, b]), _) => {
+            let why =
+                format!("Moving to the target; the distance of {a} and {b} slows the motion.");
+            told("moving", None, why)
+        }
+        _ => told("moving", None, "Moving to the target.".to_owned()),
     }
 }
 
 fn limits(session: &Session) -> Vec<LimitJson> {
-    // A servo that has not stepped since it was stopped has no joint velocities.
-    if session.last().is_none() {
-        return Vec::new();
-    }
-    let active = session.servo().into_iter().flat_map(|servo| servo.active_limits());
+    let active = session.active_limits().into_iter();
     active.map(|(coordinate, kind)| LimitJson { coordinate, kind: kind.name() }).collect()
 }

@@ -1,11 +1,14 @@
 //! The initial state of all sessions of a server.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
+use cylindroid::collision::{CollisionModel, CollisionOptions};
 use cylindroid::{EndEffector, Mechanism, Result};
 
 use super::assets::Folders;
 use super::reaching;
+use crate::obstacle::ObstacleArg;
 
 /// The initial state of all sessions of a server.
 #[derive(Debug)]
@@ -14,6 +17,19 @@ pub(crate) struct Start {
     pub(crate) q: Vec<f64>,
     pub(crate) end_effector: EndEffector,
     pub(super) folders: Folders,
+    pub(super) bodies: StartBodies,
+    /// Made when a session first needs it.
+    collision_model: OnceLock<Result<CollisionModel>>,
+}
+
+/// The obstacles of new sessions.
+#[derive(Debug, Default)]
+pub(crate) struct StartBodies {
+    pub(crate) obstacles: Vec<ObstacleArg>,
+    /// True if the servo avoids collisions.
+    pub(crate) avoid: bool,
+    /// Pairs of links that are not watched.
+    pub(crate) disabled: Vec<[String; 2]>,
 }
 
 impl Start {
@@ -24,9 +40,30 @@ impl Start {
         q: &[f64],
         end_effector: EndEffector,
         meshes: &[PathBuf],
+        bodies: StartBodies,
     ) -> Result<Self> {
         let q = reaching::closed(&mechanism, q)?;
         let folders = Folders::of(&mechanism, model, meshes)?;
-        Ok(Self { mechanism, q, end_effector, folders })
+        let collision_model = OnceLock::new();
+        let start = Self { mechanism, q, end_effector, folders, bodies, collision_model };
+        if start.bodies.avoid || !start.bodies.obstacles.is_empty() {
+            // Shapes that cannot be made are an error of the command.
+            start.collision_model()?;
+        }
+        Ok(start)
+    }
+
+    /// The bodies of the links and the obstacles.
+    pub(super) fn collision_model(&self) -> Result<CollisionModel> {
+        let make = || {
+            let disabled = self.bodies.disabled.clone();
+            let options = CollisionOptions { disabled, ..CollisionOptions::default() };
+            let mut model = CollisionModel::new(&self.mechanism, &options)?;
+            for obstacle in &self.bodies.obstacles {
+                model.add_obstacle(&obstacle.name, &obstacle.shape, obstacle.world_from_shape)?;
+            }
+            Ok(model)
+        };
+        self.collision_model.get_or_init(make).clone()
     }
 }

@@ -192,7 +192,10 @@ fn messages_have_the_keys_of_their_page() {
         let missing: Vec<_> = found.iter().filter(|key| !named(key)).collect();
         assert!(missing.is_empty(), "{missing:?} of {}", message["type"]);
     };
-    for arguments in [&["youbot", "--frame", "arm_link_2"][..], &["two-arm"], &["five-bar"]] {
+    const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
+    for arguments in
+        [&["youbot", "--frame", "arm_link_2"][..], &["two-arm"], &["five-bar"], &[CELL]]
+    {
         let server = Server::new(arguments);
         let mut client = server.client();
         let scene = client.next("scene");
@@ -201,6 +204,14 @@ fn messages_have_the_keys_of_their_page() {
             scene["overlays"].as_array().unwrap().iter().map(|o| &o["name"]).collect();
         check(&client.done(json!({"type": "overlays", "names": names})));
         check(&client.complaint(&json!({"type": "jump"})));
+        let shape = json!({"kind": "ellipsoid", "radii": [0.1, 0.2, 0.3]});
+        let egg =
+            json!({"type": "add_obstacle", "name": "egg", "shape": shape, "position": [0, 0, 9]});
+        client.say(&egg);
+        check(&client.next("scene"));
+        client.say(&json!({"type": "avoid_collisions", "on": true}));
+        check(&client.next("scene"));
+        check(&client.done(json!({"type": "distances", "margin": 99})));
         client.say(&json!({"type": "report", "name": "info"}));
         check(&client.next("report"));
         let methods = ["damped", "hyperbolic-gram"];

@@ -5,6 +5,7 @@
 mod choices;
 mod load;
 mod motion;
+mod obstacles;
 mod refused;
 mod served;
 

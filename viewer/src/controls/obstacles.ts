@@ -1,0 +1,125 @@
+/** Obstacles: added, moved by fields or the handle, removed; and the switch that makes the servo avoid them. */
+import { fill, h } from "../dom";
+import { plain } from "../format";
+import { panel } from "../panels/panel";
+import type { Pose, Scene, SimpleShape, State, Vec3 } from "../protocol";
+import type { Session } from "../session";
+
+type Kind = "sphere" | "box";
+/** The size of a new obstacle, and its distance from the tool, as shares of the reach. */
+const SIZE = 0.1;
+const ASIDE = 0.5;
+
+export class Obstacles {
+  readonly panel = panel("obstacles", "Obstacles", false);
+  private readonly avoid = h("input", { type: "checkbox", class: "switch", role: "switch", "data-avoid": "" });
+  private readonly gap = this.distance("Least distance (m)", "gap");
+  private readonly margin = this.distance("Distance below which pairs of bodies count (m)", "margin");
+  private readonly kind = h("select", { class: "select", "aria-label": "Shape of a new obstacle" }, h("option", { value: "sphere" }, "sphere"), h("option", { value: "box" }, "box"));
+  private readonly sizes = h("span", { class: "three" });
+  private readonly list = h("div", {});
+  private fields: HTMLInputElement[][] = [];
+  private held: string | null = null;
+
+  constructor(private readonly session: Session, private readonly hold: (name: string | null) => void) {
+    this.avoid.addEventListener("change", () => this.sendAvoidance());
+    this.kind.addEventListener("change", () => this.offerSizes());
+    this.panel.body.append(
+      h("label", { class: "row" }, this.avoid, h("span", {}, "Avoid collisions")),
+      h("p", { class: "note" }, "The servo then solves least squares with inequalities, and the inverse below has no effect."),
+      h("div", { class: "line" }, h("span", { class: "note" }, "Keep [m]"), this.gap),
+      h("div", { class: "line" }, h("span", { class: "note" }, "Margin [m]"), this.margin),
+      h("h3", {}, "New obstacle, size [m]"),
+      h("div", { class: "new-obstacle" }, this.kind, this.sizes, h("button", { class: "button small", type: "button", onclick: () => this.add() }, "Add")),
+      this.list,
+    );
+  }
+
+  build(scene: Scene): void {
+    const { avoidance, obstacles } = scene;
+    this.avoid.checked = avoidance !== null;
+    if (avoidance) [this.gap.value, this.margin.value] = [String(avoidance.gap), String(avoidance.margin)];
+    if (!this.sizes.hasChildNodes()) this.offerSizes();
+    this.panel.note([obstacles.length > 0 ? String(obstacles.length) : "", avoidance ? "avoided" : ""].filter(Boolean).join(", "));
+    this.fields = obstacles.map(({ name }, i) =>
+      ["x", "y", "z"].map((axis, k) => h("input", { class: "field", type: "number", step: "any", "aria-label": `${axis} of ${name} in the world frame (m)`, "data-obstacle": `${name} ${axis}`, onchange: () => this.move(i, k) })));
+    const rows = obstacles.map(({ name, kind }, i) => h(
+      "div", { class: "obstacle", "data-row": name },
+      h("span", { class: "row" },
+        h("button", { class: "button small name", type: "button", title: `Drag ${name} in the view`, "aria-pressed": "false", onclick: () => this.hold(this.held === name ? null : name) }, name),
+        h("span", { class: "note" }, kind.replaceAll("_", "-")),
+        h("button", { class: "button small remove", type: "button", title: `Remove ${name}`, "aria-label": `Remove ${name}`, onclick: () => this.session.send({ type: "remove_obstacle", name }) }, "×")),
+      h("span", { class: "three" }, ...(this.fields[i] ?? [])),
+    ));
+    fill(this.list, rows.length > 0 && h("h3", {}, "Positions [m]; the name puts the handle on it"), ...rows);
+    this.show(this.held);
+  }
+
+  /** Marks the obstacle at the handle. */
+  show(held: string | null): void {
+    this.held = held;
+    for (const row of this.list.querySelectorAll("[data-row]")) {
+      row.querySelector(".name")?.setAttribute("aria-pressed", String(row.getAttribute("data-row") === held));
+    }
+  }
+
+  place(state: State): void {
+    this.fields.forEach((fields, i) => fields.forEach((field, k) => {
+      if (document.activeElement !== field) field.value = plain(state.obstacles[i]?.position[k] ?? 0);
+    }));
+  }
+
+  private distance(label: string, name: string): HTMLInputElement {
+    return h("input", { class: "field", type: "number", step: "any", min: 0, value: name === "gap" ? "0.01" : "0.3", "aria-label": label, "data-avoidance": name, onchange: () => {
+      if (this.avoid.checked) this.sendAvoidance();
+    } });
+  }
+
+  private sendAvoidance(): void {
+    const [gap, margin] = [this.gap, this.margin].map((field) => (Number.isFinite(field.valueAsNumber) ? field.valueAsNumber : null));
+    this.session.send({ type: "avoid_collisions", on: this.avoid.checked, gap: gap ?? null, margin: margin ?? null });
+  }
+
+  private offerSizes(): void {
+    const size = Number((SIZE * (this.session.scene?.reach ?? 1)).toPrecision(1));
+    const names = this.kind.value === "sphere" ? ["radius"] : ["x", "y", "z"];
+    const value = this.kind.value === "sphere" ? size : 2 * size;
+    fill(this.sizes, ...names.map((name) => h("input", { class: "field", type: "number", step: "any", min: 0, value, "aria-label": name === "radius" ? "Radius of the new sphere (m)" : `Edge of the new box along ${name} (m)`, "data-size": name })));
+  }
+
+  private add(): void {
+    const { scene, state } = this.session;
+    if (!scene || !state) return;
+    const sizes = [...this.sizes.querySelectorAll("input")].map((field) => field.valueAsNumber);
+    const kind = this.kind.value as Kind;
+    if (sizes.some((size) => !Number.isFinite(size))) return;
+    const shape: SimpleShape = kind === "sphere" ? { kind, radius: sizes[0] ?? 0 } : { kind, size: sizes as Vec3 };
+    const taken = new Set(scene.obstacles.map(({ name }) => name));
+    let number = 1;
+    while (taken.has(`${kind} ${number}`)) number += 1;
+    const [x, y, z] = state.tool.position;
+    const position: Vec3 = [x, y - ASIDE * scene.reach, z];
+    const name = `${kind} ${number}`;
+    this.held = name;
+    this.session.send({ type: "add_obstacle", name, shape, position, quaternion: [1, 0, 0, 0] });
+  }
+
+  /** An obstacle that was added and is not yet at the handle. */
+  get added(): string | null {
+    return this.held;
+  }
+
+  private move(i: number, k: number): void {
+    const { scene, state } = this.session;
+    const [name, pose] = [scene?.obstacles[i]?.name, state?.obstacles[i]];
+    const value = this.fields[i]?.[k]?.valueAsNumber ?? NaN;
+    if (name === undefined || !pose || !Number.isFinite(value)) return;
+    const position = pose.position.map((was, axis) => (axis === k ? value : was)) as Vec3;
+    this.drag(name, { position, quaternion: pose.quaternion });
+  }
+
+  /** Sends the newest pose of an obstacle that is moved. */
+  drag(name: string, pose: Pose): void {
+    this.session.sendSoon(`obstacle ${name}`, { type: "move_obstacle", name, ...pose });
+  }
+}

@@ -1,0 +1,97 @@
+/** Bodies near each other: their pairs in a list, lines between their closest points in the view. */
+import { Group, Mesh, SphereGeometry } from "three";
+import { fill, h } from "../dom";
+import { fixed } from "../format";
+import type { Near, Scene, State } from "../protocol";
+import { drawn } from "../scene/palette";
+import type { Labels } from "../scene/labels";
+import { discard, rod, vector } from "../scene/shapes";
+import type { Session } from "../session";
+import { empty, panel } from "./panel";
+
+const MARGIN = 0.2;
+const BALL = new SphereGeometry(1, 12, 8);
+BALL.userData["shared"] = true;
+
+export class Distances {
+  readonly panel = panel("distances", "Distances", false);
+  readonly group = new Group();
+  private readonly margin = h("input", { class: "field", type: "number", step: "any", min: 0, value: MARGIN, "aria-label": "Only pairs closer than this (m)", "data-margin": "" });
+  private readonly list = h("div", {});
+
+  constructor(private readonly session: Session, private readonly labels: Labels, private readonly redraw: () => void) {
+    this.panel.body.append(h("div", { class: "line" }, h("span", { class: "note" }, "Within [m]"), this.margin), this.list);
+    this.margin.addEventListener("change", () => this.ask());
+    this.panel.onToggle((open) => {
+      this.ask();
+      if (!open) this.clear();
+      this.redraw();
+    });
+  }
+
+  /** Asks for distances as long as the panel is open. */
+  ask(): void {
+    const margin = this.margin.valueAsNumber;
+    if (this.panel.isOpen() && !Number.isFinite(margin)) return;
+    this.session.send({ type: "distances", margin: this.panel.isOpen() ? margin : null });
+  }
+
+  draw(scene: Scene, state: State, size: number): void {
+    this.clear();
+    const { distances } = state;
+    if (!this.panel.isOpen() || !distances) return;
+    const { near, more, pairs, shapes, margin } = distances;
+    const stops = (one: Near): boolean => state.servo.pair !== null && state.servo.pair.join() === [one.a, one.b].join();
+    this.panel.note(near.length > 0 ? `nearest ${fixed(near[0]?.distance, 3)} m` : "");
+    for (const one of near) this.line(one, stops(one) || one.distance <= 0 ? "c-lost" : "c-distance", size);
+    this.labels.set("distances", near.map((one) => ({
+      text: `${fixed(one.distance, 3)} m`,
+      at: vector(one.point_a).lerp(vector(one.point_b), 0.5),
+      colour: stops(one) || one.distance <= 0 ? "c-lost" : "c-distance",
+    })));
+    fill(
+      this.list,
+      shapes === 0 && empty("No link of this model has a collision shape."),
+      shapes > 0 && near.length === 0 && empty(`None of ${pairs} pairs is closer than ${fixed(margin, 3)} m.`),
+      near.length > 0 && table(near, stops),
+      near.length > 0 && h("p", { class: "note" }, `${near.length + more} of ${pairs} pairs${more > 0 ? `; the nearest ${near.length} are shown` : ""}`),
+      shapes > 0 && pairs === 0 && scene.obstacles.length === 0 && h("p", { class: "note" }, "Links that a joint connects are not watched."),
+    );
+  }
+
+  private clear(): void {
+    for (const child of [...this.group.children]) discard(child);
+    this.labels.set("distances", []);
+    this.panel.note("");
+  }
+
+  private line(one: Near, colour: string, size: number): void {
+    const [from, to] = [vector(one.point_a), vector(one.point_b)];
+    const paint = drawn(colour);
+    const line = rod(from, to, 0.0022 * size, paint);
+    const ends = [from, to].map((end) => {
+      const ball = new Mesh(BALL, paint);
+      ball.position.copy(end);
+      ball.scale.setScalar(0.006 * size);
+      return ball;
+    });
+    for (const part of [line, ...ends]) {
+      part.renderOrder = 2;
+      this.group.add(part);
+    }
+  }
+}
+
+function table(near: Near[], stops: (one: Near) => boolean): HTMLElement {
+  const rows = near.map((one) => h(
+    "tr", { class: stops(one) ? "stops" : "", "data-near": `${one.a} ${one.b}`, "data-value": one.distance },
+    h("th", { scope: "row", title: `${one.a} and ${one.b}` }, one.a, h("br"), one.b),
+    h("td", {}, fixed(one.distance, 4)),
+  ));
+  return h(
+    "table", { class: "numbers near" },
+    h("caption", { class: "hidden-label" }, "Distances of bodies"),
+    h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, "distance [m]"))),
+    h("tbody", {}, ...rows),
+  );
+}
