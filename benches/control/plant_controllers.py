@@ -1,4 +1,4 @@
-"""What drives the plants: `start(motion, dt)`, then joint velocities of the actuated coordinates
+"""What drives the plants: `start(motion, dt, plant)`, then joint velocities of the actuated coordinates
 from their measured positions, `step(measured, target, twist)`."""
 
 import logging
@@ -14,14 +14,16 @@ ACCELERATION = 10.0
 
 
 class Cylindroid:
-    name = "cylindroid"
+    name, is_told = "cylindroid", True
 
     def __init__(self, robot):
         self.robot = robot
 
-    def start(self, motion, dt):
+    def start(self, motion, dt, plant):
         robot = self.robot
         options = {"gain": GAIN, "dt": dt, "acceleration": ACCELERATION}
+        if self.is_told:
+            options |= plant
         if robot.planar:
             options["task"] = "position"
         self.dt = dt
@@ -40,6 +42,12 @@ class Cylindroid:
             return np.zeros(len(measured))
 
 
+class Untold(Cylindroid):
+    """Takes the robot for an ideal one, as the others do."""
+
+    name, is_told = "cylindroid, ideal robot", False
+
+
 class Mink:
     """mink; it takes no twist: the target is moved ahead by twist / gain, which does the same."""
 
@@ -50,7 +58,7 @@ class Mink:
 
         self.robot, self.mink = robot, mink
 
-    def start(self, motion, dt):
+    def start(self, motion, dt, plant):
         mink = self.mink
         robot, self.dt, self.refused = self.robot, dt, 0
         model = mujoco.MjModel.from_xml_path(robot.urdf)
@@ -95,7 +103,7 @@ class Legs:
     def __init__(self, robot):
         self.robot = robot
 
-    def start(self, motion, dt):
+    def start(self, motion, dt, plant):
         self.dt, self.last, self.refused = dt, None, 0
 
     def step(self, measured, target, twist):
@@ -108,4 +116,4 @@ class Legs:
 
 
 def of(robot):
-    return [Cylindroid, Legs] if robot.parallel else [Cylindroid, Mink, DampedMink]
+    return [Cylindroid, Untold, Legs] if robot.parallel else [Cylindroid, Untold, Mink, DampedMink]

@@ -64,7 +64,8 @@ positions likewise. Position limits are not stops here: the robot can be driven 
 
 mink, with its own damping (1e-12) and with 0.01, follows the same targets with the same gain (5/s)
 and the same limits of positions and speeds; this library has limits of acceleration too (10 rad/s²
-or m/s²). Both know the twist of the target. Parallel robots are driven beside it by a loop on the
+or m/s²) and knows delay and time constant of the drives and three standard deviations of the noise
+(`ServoOptions::plant`), except in the rows "ideal robot". Both know the twist of the target. Parallel robots are driven beside it by a loop on the
 measured drives, with their inverse kinematics in closed form.
 
 A moving target is followed if the median error of the second half is below 10 mm and 50 mrad, a

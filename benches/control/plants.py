@@ -84,6 +84,14 @@ class Plant:
         return self.robot.pose(self.model, self.data)
 
 
+def behind(drive):
+    """What a controller may know of a drive: delay and time constant [s], largest error of the
+    encoders (three standard deviations) [rad or m]."""
+    mode, _, delay = drive
+    stiffness = STIFFNESS / np.log(2) if mode == "position" else 0.0
+    return {"delay": delay, "time_constant": LAG + stiffness, "noise": 3 * NOISE}
+
+
 def errors(pose, target, planar):
     """Distance and angle between two poses; of the position alone in the plane."""
     far = np.linalg.norm(pose[:3, 3] - target[:3, 3])
@@ -100,7 +108,7 @@ def follow(robot, kind, motion, drive, controller, seed):
     plant = Plant(robot, drive, rng)
     plant.start(motion.start)
     dt = plant.period * PHYSICS
-    controller.start(motion, dt)
+    controller.start(motion, dt, behind(drive))
     integrated = plant.data.qpos[plant.at].copy()
     rows = []
     for k in range(round(motion.seconds / dt)):

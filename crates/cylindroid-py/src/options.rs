@@ -1,6 +1,6 @@
 //! From Python's keywords to the options of the servo, with the names of the command line.
 
-use cylindroid::control::{SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Task};
+use cylindroid::control::{Plant, SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Task};
 use cylindroid::model::JointLimits;
 use cylindroid::{Error, Mechanism, ReferenceFrame, ServoOptions, Twist};
 use pyo3::prelude::*;
@@ -136,6 +136,15 @@ pub(crate) fn null_space(name: &str) -> Result<SecondaryNullSpace> {
 pub(crate) fn gain(of: &Numbers<'_>) -> Result<ServoGains> {
     let (position, orientation) = pair("gain", of, f64::NAN)?;
     Ok(ServoGains { position, orientation })
+}
+
+/// The robot behind a servo; what is not given is ideal.
+pub(crate) fn plant(delay: Option<f64>, time_constant: Option<f64>, noise: Option<f64>) -> Plant {
+    Plant {
+        delay: delay.unwrap_or(0.0),
+        time_constant: time_constant.unwrap_or(0.0),
+        noise: noise.unwrap_or(0.0),
+    }
 }
 
 pub(crate) fn speed(of: &Numbers<'_>) -> Result<SpeedLimit> {

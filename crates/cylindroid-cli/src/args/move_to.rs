@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use cylindroid::control::SecondaryTask;
+use cylindroid::control::{Plant, SecondaryTask};
 use cylindroid::inverse::Parameter;
 use cylindroid::{Error, Result};
 
@@ -253,6 +253,18 @@ pub(crate) struct ServoArgs {
     #[arg(long, value_name = "A", allow_hyphen_values = true)]
     pub(crate) acceleration: Option<f64>,
 
+    /// The robot is behind its commands: time until they arrive at its drives [s] [default: 0]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub(crate) delay: Option<f64>,
+
+    /// Time constant of its drives [s] [default: 0]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    pub(crate) time_constant: Option<f64>,
+
+    /// Largest error of its encoders [rad or m] [default: 0]
+    #[arg(long, value_name = "RAD", allow_hyphen_values = true)]
+    pub(crate) noise: Option<f64>,
+
     /// Length that scales the linear rows of the Jacobian for the inverse and for singular values
     /// [m] [default: that of the model]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
@@ -289,6 +301,17 @@ fn secondary_help() -> String {
          chains, otherwise none]",
         named.join(", ")
     )
+}
+
+impl ServoArgs {
+    /// The robot that is simulated, and that the servo knows.
+    pub(crate) fn plant(&self) -> Plant {
+        Plant {
+            delay: self.delay.unwrap_or(0.0),
+            time_constant: self.time_constant.unwrap_or(0.0),
+            noise: self.noise.unwrap_or(0.0),
+        }
+    }
 }
 
 #[derive(Debug, Args)]

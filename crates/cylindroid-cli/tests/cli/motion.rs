@@ -1,6 +1,6 @@
 //! `move`.
 
-use crate::{cylindroid, difference, json, numbers, text};
+use crate::{cylindroid, difference, json, numbers, refused, text};
 
 #[test]
 fn the_command_of_the_readme_reaches() {
@@ -156,6 +156,22 @@ fn files_hold_every_step() {
     assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>"));
     for words in ["shoulder_pan_joint", "time [s]", "error [m, rad]", "joints [rad]"] {
         assert!(drawing.contains(words), "{words}");
+    }
+}
+
+/// A robot that lags arrives later; values that define none name their flag.
+#[test]
+fn a_robot_that_lags_arrives_later() {
+    let command = ["move", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"];
+    let time = |more: &[&str]| json(&[&command, more].concat(), 0)["time"].as_f64().unwrap();
+    let ideal = time(&[]);
+    let plant = ["--delay", "0.02", "--time-constant", "0.06"];
+    let later = time(&plant) - ideal;
+    assert!(later > 0.05 && later < 2.0, "{later}");
+    time(&[&plant[..], &["--noise", "1e-5", "--tolerance-position", "1e-3"]].concat());
+    for flag in ["--delay", "--time-constant", "--noise"] {
+        let message = refused(&[&command[..], &[flag, "-1"]].concat());
+        assert!(message.contains(flag), "{message}");
     }
 }
 

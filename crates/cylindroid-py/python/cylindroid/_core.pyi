@@ -1342,6 +1342,9 @@ class Servo:
         tolerance_orientation: float | None = None,
         speed: float | tuple[float, float] | ArrayLike | None = None,
         acceleration: float | None = None,
+        delay: float | None = None,
+        time_constant: float | None = None,
+        noise: float | None = None,
         command_timeout: float | None = None,
         limits: dict[str, dict[str, float]] | None = None,
         length: float | None = None,
@@ -1368,6 +1371,9 @@ class Servo:
         limits: dict[str, dict[str, float]] | None = None,
         dt: float | None = None,
         acceleration: float | None = None,
+        delay: float | None = None,
+        time_constant: float | None = None,
+        noise: float | None = None,
         length: float | None = None,
         joint_weights: ArrayLike | None = None,
     ) -> TaskServo: ...
@@ -1783,6 +1789,9 @@ class TaskServo:
         length: float | None = None,
         joint_weights: ArrayLike | None = None,
         acceleration: float | None = None,
+        delay: float | None = None,
+        time_constant: float | None = None,
+        noise: float | None = None,
         eps: float | None = None,
     ) -> TaskServo: ...
     @property

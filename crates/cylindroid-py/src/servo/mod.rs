@@ -51,6 +51,10 @@ pub(crate) use trajectory::PyTrajectory;
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]; `inf` for none. Default: 20, the
 ///     default ramp; none for closed chains and with `tasks`.
+/// delay, time_constant, noise : float, optional
+///     The robot: time until a command arrives at its drives (s), the time constant with which they
+///     follow it (s), and the largest error of its encoders [rad or m]. The servo steers the
+///     configuration to which its commands lead, so that joints brake in time. Default: 0.
 /// command_timeout : float, optional
 ///     Time for which a twist of `step_twist` holds without a new command (s). Default: 0.1.
 /// limits : dict of str to dict of str to float, optional
@@ -86,7 +90,7 @@ pub(crate) use trajectory::PyTrajectory;
 ///     none, the arm stops.
 /// tasks : sequence of MotionTask, optional
 ///     Makes a `TaskServo` of these tasks instead, with `collisions`, `limits`, `dt`, `acceleration`,
-///     `length` and `joint_weights`; the other options belong to a single frame.
+///     `delay`, `time_constant`, `noise`, `length` and `joint_weights`; the other options belong to a single frame.
 /// collisions : CollisionAvoidance, optional
 ///     The distances to keep, beside `tasks`.
 /// **parameters : float
@@ -202,7 +206,8 @@ impl PyServo {
     #[new]
     #[pyo3(signature = (mechanism, frame = None, gain = None, *, tool = None, dt = None,
         tolerance_position = None, tolerance_orientation = None, speed = None,
-        acceleration = None, command_timeout = None, limits = None, length = None, joint_weights = None, secondary = None,
+        acceleration = None, delay = None, time_constant = None, noise = None,
+        command_timeout = None, limits = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
         inverse = "truncated", give_up = None, fallback = None, tasks = None, collisions = None,
         **parameters))]
@@ -219,6 +224,9 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
         speed: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        #[pyo3(from_py_with = argument)] delay: Option<f64>,
+        #[pyo3(from_py_with = argument)] time_constant: Option<f64>,
+        #[pyo3(from_py_with = argument)] noise: Option<f64>,
         #[pyo3(from_py_with = argument)] command_timeout: Option<f64>,
         limits: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,
@@ -240,6 +248,7 @@ impl PyServo {
             Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,
         };
         let robot = &limited;
+        let plant = options::plant(delay, time_constant, noise);
         if let Some(tasks) = tasks {
             let foreign = [
                 ("frame", frame.is_some()),
@@ -271,7 +280,7 @@ impl PyServo {
                     return Err(Failure::option("joint_weights", name, reason));
                 }
             };
-            let numbers = TaskServoNumbers { dt, length, acceleration, eps: None };
+            let numbers = TaskServoNumbers { dt, length, acceleration, eps: None, plant };
             let collisions = collisions.as_ref().map(Py::get);
             let servo = PyTaskServo::make(py, robot, (&tasks, collisions), &[], weights, numbers)?;
             return Ok(Bound::new(py, servo)?.into_any());
@@ -299,6 +308,7 @@ impl PyServo {
         set(&mut options.acceleration, acceleration);
         set(&mut options.command_timeout, command_timeout);
         set(&mut options.length, length);
+        options.plant = plant;
         match &joint_weights {
             None => {}
             Some(JointWeights::Name(name)) if name == "inertia" => options.inertia_weights = true,

@@ -1,4 +1,4 @@
-//! Complete motions: simulation of a servo with an ideal robot, and reconfiguration.
+//! Complete motions: simulation of a servo with its robot, and reconfiguration.
 
 use cylindroid::control::{Target, TrajectorySample, find_reachable_configuration, simulate};
 use cylindroid::{Error, Pose};
@@ -18,7 +18,8 @@ enum Goal {
 
 #[pymethods]
 impl PyServo {
-    /// Simulates the servo with an ideal robot until it reaches the target or stalls.
+    /// Simulates the servo with its robot (`delay`, `time_constant` and `noise` of the servo; an
+    /// ideal one by default) until it reaches the target or stalls.
     ///
     /// Parameters
     /// ----------

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use cylindroid::Mechanism;
-use cylindroid::control::{CollisionAvoidance, TaskServo, TaskServoOptions};
+use cylindroid::control::{CollisionAvoidance, Plant, TaskServo, TaskServoOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -43,6 +43,8 @@ use crate::options;
 ///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1.
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
+/// delay, time_constant, noise : float, optional
+///     Of the robot, see `Servo` (s, s, rad or m). Default: 0.
 /// eps : float, optional
 ///     Directions of a level with singular values below this share of its norm are left out.
 ///     Default: 1e-3.
@@ -150,6 +152,7 @@ pub(crate) struct TaskServoNumbers {
     pub(crate) length: Option<f64>,
     pub(crate) acceleration: Option<f64>,
     pub(crate) eps: Option<f64>,
+    pub(crate) plant: Plant,
 }
 
 impl PyTaskServo {
@@ -167,6 +170,7 @@ impl PyTaskServo {
         set(&mut chosen.length, numbers.length);
         set(&mut chosen.acceleration, numbers.acceleration);
         set(&mut chosen.eps, numbers.eps);
+        chosen.plant = numbers.plant;
         if let Some(weights) = &joint_weights {
             chosen.joint_weights = weights.vector("joint_weights")?.to_vec();
         }
@@ -202,7 +206,8 @@ impl PyTaskServo {
 impl PyTaskServo {
     #[new]
     #[pyo3(signature = (mechanism, tasks, collisions = None, *, half_spaces = None, limits = None,
-        dt = None, length = None, joint_weights = None, acceleration = None, eps = None))]
+        dt = None, length = None, joint_weights = None, acceleration = None, delay = None,
+        time_constant = None, noise = None, eps = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         py: Python<'_>,
@@ -215,9 +220,13 @@ impl PyTaskServo {
         #[pyo3(from_py_with = argument)] length: Option<f64>,
         joint_weights: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        #[pyo3(from_py_with = argument)] delay: Option<f64>,
+        #[pyo3(from_py_with = argument)] time_constant: Option<f64>,
+        #[pyo3(from_py_with = argument)] noise: Option<f64>,
         #[pyo3(from_py_with = argument)] eps: Option<f64>,
     ) -> Result<Self> {
-        let numbers = TaskServoNumbers { dt, length, acceleration, eps };
+        let plant = options::plant(delay, time_constant, noise);
+        let numbers = TaskServoNumbers { dt, length, acceleration, eps, plant };
         let limited = match &limits {
             None => mechanism.inner.clone(),
             Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,

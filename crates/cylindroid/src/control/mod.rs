@@ -29,12 +29,12 @@ pub use motion::{
     AxisRotation, CartesianBounds, CartesianMove, CartesianPath, CartesianSample, JointDefaults,
     JointMove, JointPath, JointSample, KinematicBounds, LawSample, MotionResult, PathDeviation,
     Reconfiguration, TimeLaw, TrajectorySample, WaypointMove, find_reachable_configuration,
-    simulate,
+    simulate, simulate_twist,
 };
 pub use servo::{
-    ConditionReport, InverseChoice, InverseSelection, JointState, NamedInverse, PoseTolerance,
-    ReferencePointComparison, SecondaryNullSpace, SecondaryTask, Servo, ServoGains, ServoOptions,
-    SpeedLimit, Stall, Status, Step, Target, TaskProjection, TwistStatus, TwistStep,
+    ConditionReport, InverseChoice, InverseSelection, JointState, NamedInverse, Plant,
+    PoseTolerance, ReferencePointComparison, SecondaryNullSpace, SecondaryTask, Servo, ServoGains,
+    ServoOptions, SpeedLimit, Stall, Status, Step, Target, TaskProjection, TwistStatus, TwistStep,
     VelocitiesAtPoint,
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};

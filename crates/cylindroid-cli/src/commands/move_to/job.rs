@@ -160,6 +160,7 @@ fn apply(args: &ServoArgs, options: &mut ServoOptions) -> Result<()> {
     set(&mut options.tolerance.orientation, args.tolerance_orientation);
     set(&mut options.acceleration, args.acceleration);
     set(&mut options.length, args.length);
+    options.plant = args.plant();
     match &args.joint_weights {
         None => {}
         Some(Weights::Inertia) => options.inertia_weights = true,

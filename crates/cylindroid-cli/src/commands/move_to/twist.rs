@@ -1,8 +1,6 @@
 //! Motions that follow a twist for a time, then stop.
 
-use std::collections::BTreeSet;
-
-use cylindroid::control::{MotionResult, TrajectorySample, TwistStatus};
+use cylindroid::control::{MotionResult, Step, TrajectorySample, simulate_twist};
 use cylindroid::spatial::Twist;
 use cylindroid::{Pose, ReferenceFrame, Result, Rotation, Servo};
 
@@ -16,59 +14,28 @@ pub(super) fn simulate(
     goal: &TwistGoal,
     mut observe: impl FnMut(TrajectorySample<'_>),
 ) -> Result<MotionResult> {
-    let dt = job.options.dt;
-    let mut q = job.start.clone();
-    let mut steps = 0_usize;
-    let mut min_singular_ratio = f64::INFINITY;
-    let mut limits_hit = BTreeSet::new();
-    let (mut no_inverse, mut steps_without_inverse) = (None, 0);
-    loop {
-        let time = steps as f64 * dt;
-        let commanded = time < goal.duration;
-        let twist = match job.options.task.axes {
-            _ if !commanded => Twist::ZERO,
+    let command = |time: f64, q: &[f64]| {
+        if time >= goal.duration {
+            return Ok(None);
+        }
+        Ok(Some(match job.options.task.axes {
             ReferenceFrame::Local => {
-                let axes = job.robot.state(&q)?.pose(job.options.end_effector).rotation;
+                let axes = job.robot.state(q)?.pose(job.options.end_effector).rotation;
                 let Twist { linear, angular } = goal.twist;
                 Twist { linear: axes * linear, angular: axes * angular }
             }
             _ => goal.twist,
-        };
-        let now = servo.step_twist(&q, Some(twist))?;
-        let mut last = now.step;
-        [last.position_error, last.orientation_error] = errors(job, last.pose);
-        min_singular_ratio = min_singular_ratio.min(last.singular_ratio);
-        limits_hit.extend(servo.active_limits());
-        if let Some(reason) = servo.no_inverse() {
-            no_inverse.get_or_insert(reason);
-            steps_without_inverse += 1;
-        }
-        observe(TrajectorySample {
-            time,
-            q: &q,
-            joint_velocities: servo.joint_velocities(),
-            step: &last,
-        });
-        let stalled = now.status == TwistStatus::Stalled;
-        let reached = !commanded && now.status == TwistStatus::AtRest;
-        if stalled || reached || time >= job.time_limit {
-            return Ok(MotionResult {
-                reached,
-                stall: stalled.then(|| servo.stall()),
-                q,
-                last,
-                steps,
-                time,
-                largest_lag: 0.0,
-                min_singular_ratio,
-                limits_hit,
-                no_inverse,
-                steps_without_inverse,
-            });
-        }
-        servo.advance(&mut q);
-        steps += 1;
-    }
+        }))
+    };
+    let seen = |step: &Step| {
+        let [position_error, orientation_error] = errors(job, step.pose);
+        Step { position_error, orientation_error, ..*step }
+    };
+    let observe = |sample: TrajectorySample<'_>| {
+        observe(TrajectorySample { step: &seen(sample.step), ..sample });
+    };
+    let result = simulate_twist(servo, &job.start, job.time_limit, command, observe)?;
+    Ok(MotionResult { last: seen(&result.last), ..result })
 }
 
 /// Distance and angle to the target, in the components of the task.

@@ -17,6 +17,6 @@ pub use cartesian_move::{CartesianBounds, CartesianMove, CartesianSample};
 pub use joint_move::{JointDefaults, JointMove, JointPath, JointSample};
 pub use path::{AxisRotation, CartesianPath, PathDeviation};
 pub use reconfiguration::{Reconfiguration, find_reachable_configuration};
-pub use simulation::{MotionResult, TrajectorySample, simulate};
+pub use simulation::{MotionResult, TrajectorySample, simulate, simulate_twist};
 pub use time_law::{KinematicBounds, LawSample, TimeLaw};
 pub use waypoints::WaypointMove;

@@ -1,14 +1,15 @@
-//! Simulation of a servo with an ideal robot, until it reaches its target or stalls: the loop of
-//! `move`.
+//! Simulation of a servo, until it reaches its target or stalls: the loops of `move`.
 //!
-//! Checked  tests/it/servo/steps.rs, tests/it/servo/stall.rs
+//! Checked  tests/it/servo/steps.rs, tests/it/servo/stall.rs, tests/it/servo/plant.rs,
+//!          tests/it/servo/twist.rs
 
 use std::collections::BTreeSet;
 
-use crate::control::servo::{Servo, Stall, Status, Step, Target};
+use crate::control::servo::{Servo, SimulatedRobot, Stall, Status, Step, Target, TwistStatus};
 use crate::control::solver::LimitKind;
 use crate::error::Result;
 use crate::screws::NoInverse;
+use crate::spatial::Twist;
 
 /// One instant of a motion.
 #[derive(Debug)]
@@ -50,7 +51,8 @@ pub struct MotionResult {
     pub steps_without_inverse: usize,
 }
 
-/// Steps `servo` from `q` until the motion ends, or for `duration` seconds (one step if it is NaN).
+/// Steps `servo` from `q`, with a robot as [`ServoOptions::plant`](crate::ServoOptions::plant)
+/// describes it, until the motion ends, or for `duration` seconds (one step if it is NaN).
 /// `target` gives the target at a time (s) and whether it is the final one, `observe` receives
 /// every step.
 ///
@@ -82,50 +84,134 @@ pub fn simulate(
     mut target: impl FnMut(f64) -> (Target, bool),
     mut observe: impl FnMut(TrajectorySample<'_>),
 ) -> Result<MotionResult> {
-    let dt = servo.options().dt;
-    let mut q = q.to_vec();
-    let mut steps = 0_usize;
-    let (mut largest_lag, mut min_singular_ratio) = (0.0_f64, f64::INFINITY);
-    let mut limits_hit = BTreeSet::new();
-    let mut no_inverse = None;
-    let mut steps_without_inverse = 0;
+    let mut run = Run::new(servo, q);
     loop {
-        let time = steps as f64 * dt;
+        let time = run.time();
         let (now, is_final) = target(time);
-        let step = servo.step(&q, now)?;
-        largest_lag = largest_lag.max(step.lag);
-        min_singular_ratio = min_singular_ratio.min(step.singular_ratio);
-        limits_hit.extend(servo.active_limits());
-        observe(TrajectorySample {
-            time,
-            q: &q,
-            joint_velocities: servo.joint_velocities(),
-            step: &step,
-        });
+        let step = run.servo.step(run.robot.measure(), now)?;
+        run.note(step, &mut observe);
         let reached = is_final && step.status == Status::Reached;
-        if let Some(reason) = servo.no_inverse() {
-            no_inverse.get_or_insert(reason);
-            steps_without_inverse += 1;
-        }
         // An arm that stopped because no inverse exists does not follow the target any further.
-        let stalled = step.status == Status::Stalled && (is_final || servo.is_stopped());
+        let stalled = step.status == Status::Stalled && (is_final || run.servo.is_stopped());
         let in_time = time < duration; // NaN is not
         if reached || stalled || !in_time {
-            return Ok(MotionResult {
-                reached,
-                stall: stalled.then(|| servo.stall()),
-                q,
-                last: step,
-                steps,
-                time,
-                largest_lag,
-                min_singular_ratio,
-                limits_hit,
-                no_inverse,
-                steps_without_inverse,
-            });
+            return Ok(run.end(step, reached, stalled));
         }
-        servo.advance(&mut q);
-        steps += 1;
+        run.advance();
+    }
+}
+
+/// The same in velocity mode: follows the twist that `command` gives for a time (s) and a
+/// configuration, world axes, at the tool. `None` is the end: the joints brake, and the motion is
+/// complete at rest. It ends early at a stall, and after `duration` (s).
+///
+/// ```
+/// use cylindroid::control::simulate_twist;
+/// use cylindroid::{Servo, ServoOptions, Twist, Vec3};
+///
+/// let robot = cylindroid::load("panda")?;
+/// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
+/// let up = Twist { linear: Vec3::Z * 0.1, angular: Vec3::ZERO };
+/// let command = |time, _: &[f64]| Ok((time < 1.0).then_some(up));
+/// let result = simulate_twist(&mut servo, robot.home(), 10.0, command, |_| ())?;
+/// let way = |q| Ok::<_, cylindroid::Error>(robot.state(q)?.pose(robot.tool()).translation);
+/// assert!(result.reached && (way(&result.q)? - way(robot.home())?).norm() > 0.09);
+/// # Ok::<(), cylindroid::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`Servo::step_twist`], and those of `command`.
+pub fn simulate_twist(
+    servo: &mut Servo,
+    q: &[f64],
+    duration: f64,
+    mut command: impl FnMut(f64, &[f64]) -> Result<Option<Twist>>,
+    mut observe: impl FnMut(TrajectorySample<'_>),
+) -> Result<MotionResult> {
+    servo.mechanism().check_q("q", q)?;
+    let mut run = Run::new(servo, q);
+    loop {
+        let time = run.time();
+        let twist = command(time, run.robot.q())?;
+        let now = run.servo.step_twist(run.robot.measure(), Some(twist.unwrap_or(Twist::ZERO)))?;
+        run.note(now.step, &mut observe);
+        let stalled = now.status == TwistStatus::Stalled;
+        let reached = twist.is_none() && now.status == TwistStatus::AtRest;
+        let in_time = time < duration; // NaN is not
+        if reached || stalled || !in_time {
+            return Ok(run.end(now.step, reached, stalled));
+        }
+        run.advance();
+    }
+}
+
+/// A simulation and what it has seen.
+struct Run<'a> {
+    servo: &'a mut Servo,
+    robot: SimulatedRobot,
+    steps: usize,
+    largest_lag: f64,
+    min_singular_ratio: f64,
+    limits_hit: BTreeSet<(usize, LimitKind)>,
+    no_inverse: Option<NoInverse>,
+    steps_without_inverse: usize,
+}
+
+impl<'a> Run<'a> {
+    fn new(servo: &'a mut Servo, q: &[f64]) -> Self {
+        let (plant, dt) = (servo.options().plant, servo.options().dt);
+        Self {
+            robot: SimulatedRobot::new(servo.mechanism(), q, plant, dt),
+            servo,
+            steps: 0,
+            largest_lag: 0.0,
+            min_singular_ratio: f64::INFINITY,
+            limits_hit: BTreeSet::new(),
+            no_inverse: None,
+            steps_without_inverse: 0,
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.steps as f64 * self.servo.options().dt
+    }
+
+    fn note(&mut self, step: Step, observe: &mut impl FnMut(TrajectorySample<'_>)) {
+        self.largest_lag = self.largest_lag.max(step.lag);
+        self.min_singular_ratio = self.min_singular_ratio.min(step.singular_ratio);
+        self.limits_hit.extend(self.servo.active_limits());
+        if let Some(reason) = self.servo.no_inverse() {
+            self.no_inverse.get_or_insert(reason);
+            self.steps_without_inverse += 1;
+        }
+        observe(TrajectorySample {
+            time: self.time(),
+            q: self.robot.q(),
+            joint_velocities: self.servo.joint_velocities(),
+            step: &step,
+        });
+    }
+
+    fn advance(&mut self) {
+        let servo = &*self.servo;
+        let (velocities, dt) = (servo.joint_velocities(), servo.options().dt);
+        self.robot.follow(servo.mechanism(), velocities, dt, |q| servo.close(q));
+        self.steps += 1;
+    }
+
+    fn end(self, last: Step, reached: bool, stalled: bool) -> MotionResult {
+        MotionResult {
+            reached,
+            stall: stalled.then(|| self.servo.stall()),
+            time: self.time(),
+            q: self.robot.into_q(),
+            last,
+            steps: self.steps,
+            largest_lag: self.largest_lag,
+            min_singular_ratio: self.min_singular_ratio,
+            limits_hit: self.limits_hit,
+            no_inverse: self.no_inverse,
+            steps_without_inverse: self.steps_without_inverse,
+        }
     }
 }

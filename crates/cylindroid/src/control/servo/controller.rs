@@ -15,6 +15,7 @@
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
 //! Checked  tests/it/servo/, tests/allocation.rs
 
+mod behind_plant;
 pub(super) mod condition;
 mod escaping;
 mod moving_target;
@@ -29,6 +30,7 @@ use super::inertia_weights::InertiaWeights;
 use super::limits::BrakingMargin;
 use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
 use super::options::ServoOptions;
+use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
 use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
@@ -108,6 +110,8 @@ pub struct Servo {
     last_target: Option<Pose>,
     follower: TargetFollower,
     distance: f64,
+    /// Of a robot that is not ideal.
+    predictor: Option<Box<Predictor>>,
 }
 
 impl Servo {
@@ -139,6 +143,7 @@ impl Servo {
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))
             .map(|mut l| {
+                options.plant.keep_off(&mut l);
                 if l.acceleration == f64::INFINITY {
                     l.acceleration = options.acceleration;
                 }
@@ -169,6 +174,7 @@ impl Servo {
             Some(_) => Vec::new(),
             None => vec![Matrix::zeros(6, n); n],
         };
+        let predictor = Predictor::new(mechanism, options.plant, options.dt).map(Box::new);
         let mut servo = Self {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
@@ -210,6 +216,7 @@ impl Servo {
             last_target: None,
             follower: TargetFollower::new(m),
             distance: 0.0,
+            predictor,
             chain,
         };
         servo.generic_rank = if servo.coupled.is_some() {
@@ -303,8 +310,21 @@ impl Servo {
         secondary_velocities: &[f64],
     ) -> Result<Step> {
         let target = target.into();
-        self.check_input(q, &target, secondary_velocities)?;
+        self.mechanism.check_q("q", q)?;
+        if !secondary_velocities.is_empty() {
+            self.mechanism.check_q("secondary joint velocities", secondary_velocities)?;
+        }
+        target.check()?;
+        self.step_to_pose(q, &target, secondary_velocities)
+    }
 
+    /// A step of a robot that does as it is told.
+    fn step_ideal(
+        &mut self,
+        q: &[f64],
+        target: &Target,
+        secondary_velocities: &[f64],
+    ) -> Result<Step> {
         let pose = self.load_configuration(q)?;
         let desired = target.desired(pose, &self.options)?;
         self.load_jacobian(q)?;
@@ -332,28 +352,18 @@ impl Servo {
         };
 
         self.note_configuration(q);
-        let is_left_behind = self.follow(&target, &desired, pose, braking);
-        let tolerance = self.options.tolerance;
+        let is_left_behind = self.follow(target, &desired, pose, braking);
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
         let scaled = position_error / self.options.length + orientation_error;
-        let near =
-            position_error <= tolerance.position && orientation_error <= tolerance.orientation;
         // Out of reach it is enough that the position does not improve: the orientation may creep on
         // for minutes.
         let out_of_reach = self.is_out_of_reach();
         let dt = self.options.dt;
         let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
         let stalled = self.stall_detector.stalled(scaled, braking, dt) || far || is_left_behind;
-        let status = if near && self.settled(desired.feed_forward) {
-            Status::Reached
-        } else if stalled || self.is_stopped() {
-            Status::Stalled
-        } else {
-            Status::Moving
-        };
-        Ok(Step {
-            status,
+        let mut step = Step {
+            status: Status::Moving,
             pose,
             position_error,
             orientation_error,
@@ -361,7 +371,13 @@ impl Servo {
             singular_ratio: self.singular_ratio(),
             rank,
             saturation,
-        })
+        };
+        if self.is_near(step) && self.settled(desired.feed_forward) {
+            step.status = Status::Reached;
+        } else if stalled || self.is_stopped() {
+            step.status = Status::Stalled;
+        }
+        Ok(step)
     }
 
     /// Joint velocities of the last step, of all n coordinates [rad/s or m/s]: actuated and passive
@@ -444,18 +460,26 @@ impl Servo {
         self.follower.reset();
         self.twist_follower.reset();
         self.approaches_type_ii = false;
+        if let Some(predictor) = &mut self.predictor {
+            predictor.reset();
+        }
         if let Some(escape) = &mut self.escape {
             escape.reset();
         }
     }
 
-    /// Integrates `q` by the joint velocities of the last step, for simulation; the passive joints
-    /// of a closed chain are assembled.
+    /// Integrates `q` by the joint velocities of the last step, for the simulation of an ideal robot;
+    /// the passive joints of a closed chain are assembled.
     ///
     /// # Panics
     /// If `q` is shorter than the mechanism's number of coordinates.
     pub fn advance(&self, q: &mut [f64]) {
         self.mechanism.integrate_in_place(q, self.joint_velocities(), self.options.dt);
+        self.close(q);
+    }
+
+    /// Assembles the loops near `q`.
+    pub(in crate::control) fn close(&self, q: &mut [f64]) {
         if let Some(coupled) = &self.coupled {
             coupled.close(q);
         }
@@ -471,13 +495,5 @@ impl Servo {
     pub(in crate::control) fn free_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
         let free = |(i, _): &(usize, &usize)| !self.space.is_locked(*i);
         self.coordinates().iter().enumerate().filter(free).map(|(_, &c)| c)
-    }
-
-    fn check_input(&self, q: &[f64], target: &Target, secondary_velocities: &[f64]) -> Result<()> {
-        self.mechanism.check_q("q", q)?;
-        if !secondary_velocities.is_empty() {
-            self.mechanism.check_q("secondary joint velocities", secondary_velocities)?;
-        }
-        target.check()
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Checked  tests/it/servo/steps.rs, tests/it/servo/limits.rs
 
+use super::plant::Plant;
 use super::projection::{ProjectionChoice, TaskProjection};
 use super::secondary::SecondaryTask;
 use super::task_space::TaskScaling;
@@ -85,6 +86,8 @@ pub struct ServoOptions {
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; by default the
     /// default ramp, [`tolerance::DEFAULT_RAMP`], and none for closed chains; infinite for none.
     pub acceleration: f64,
+    /// The lag, the delay and the noise of the robot.
+    pub plant: Plant,
     /// Time for which a twist of [`Servo::step_twist`](super::controller::Servo::step_twist) holds
     /// without a new command (s); infinite for no watchdog.
     pub command_timeout: f64,
@@ -122,6 +125,7 @@ impl ServoOptions {
             inertia_weights: false,
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
             acceleration: if closed { f64::INFINITY } else { tolerance::DEFAULT_RAMP },
+            plant: Plant::IDEAL,
             command_timeout: 0.1,
             secondary: Vec::new(),
             null_space: SecondaryNullSpace::Exact,
@@ -215,6 +219,7 @@ impl ServoOptions {
                 });
             }
         }
+        self.plant.check(self.dt)?;
         self.task.check()?;
         if self.inertia_weights && !self.joint_weights.is_empty() {
             return Err(Error::InvalidOption {

@@ -49,6 +49,8 @@ impl Member {
 /// Rows of one task.
 #[derive(Debug, Clone)]
 pub(super) struct TaskRows {
+    /// At the measured configuration, and at the one to which the commands lead.
+    pub(super) measured_error: Vec<f64>,
     pub(super) error: Vec<f64>,
     pub(super) feed_forward: Vec<f64>,
     pub(super) jacobian: Matrix,

@@ -4,7 +4,7 @@
 
 use super::objective::TaskObjective;
 use crate::collision::CollisionModel;
-use crate::control::servo::{PoseTolerance, Status};
+use crate::control::servo::{Plant, PoseTolerance, Status};
 use crate::control::solver::bounds::LimitKind;
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
@@ -100,6 +100,8 @@ pub struct TaskServoOptions {
     pub joint_weights: Vec<f64>,
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
     pub acceleration: f64,
+    /// The lag, the delay and the noise of the robot.
+    pub plant: Plant,
     /// Directions of a level with singular values below this share of its norm are left out [-].
     pub eps: f64,
     /// Distances to keep.
@@ -109,7 +111,7 @@ pub struct TaskServoOptions {
 }
 
 impl TaskServoOptions {
-    /// 1 kHz, the characteristic length of the mechanism, no weights, no collisions.
+    /// 1 kHz, the characteristic length of the mechanism, no weights, an ideal robot, no collisions.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         Self {
@@ -117,6 +119,7 @@ impl TaskServoOptions {
             length: mechanism.reach(),
             joint_weights: Vec::new(),
             acceleration: f64::INFINITY,
+            plant: Plant::IDEAL,
             eps: tolerance::TRUNCATION,
             collisions: None,
             half_spaces: Vec::new(),
@@ -192,6 +195,7 @@ pub(super) fn check(
             "it must be positive; infinity means no limit",
         );
     }
+    options.plant.check(options.dt)?;
     if !(options.eps >= 0.0 && options.eps < 1.0) {
         return refuse("eps", options.eps.to_string(), "it must be in [0, 1)");
     }

@@ -1,4 +1,4 @@
-//! Simulation of a servo of many tasks with an ideal robot, until none of them moves any further.
+//! Simulation of a servo of many tasks, until none of them moves any further.
 //!
 //! Checked  tests/it/servo/task_reports.rs
 
@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use super::options::TaskReport;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::servo::Status;
+use crate::control::servo::{SimulatedRobot, Status};
 use crate::control::solver::bounds::LimitKind;
 use crate::error::Result;
 
@@ -31,7 +31,8 @@ pub struct TaskMotionResult {
 }
 
 impl TaskServo {
-    /// Steps from `q` until every task is reached or stalled, or for `duration` seconds (one step if
+    /// Steps from `q`, with a robot as [`TaskServoOptions::plant`](super::TaskServoOptions::plant)
+    /// describes it, until every task is reached or stalled, or for `duration` seconds (one step if
     /// it is NaN). `observe` receives the time (s), the configuration before the step and the servo
     /// after it.
     ///
@@ -43,12 +44,13 @@ impl TaskServo {
         duration: f64,
         mut observe: impl FnMut(f64, &[f64], &Self),
     ) -> Result<TaskMotionResult> {
-        let mut q = q.to_vec();
+        let (plant, dt) = (self.plant(), self.dt());
+        let mut robot = SimulatedRobot::new(self.mechanism(), q, plant, dt);
         let (mut steps, mut limits_hit, mut nearest) = (0_usize, BTreeSet::new(), None);
         loop {
-            let time = steps as f64 * self.dt();
-            let status = self.step(&q)?;
-            observe(time, &q, self);
+            let time = steps as f64 * dt;
+            let status = self.step(robot.measure())?;
+            observe(time, robot.q(), self);
             limits_hit.extend(self.active_limits());
             for near in self.near() {
                 if nearest.is_none_or(|n: NearPair| near.distance < n.distance) {
@@ -61,7 +63,7 @@ impl TaskServo {
                 let reports = self.reports().to_vec();
                 return Ok(TaskMotionResult {
                     status,
-                    q,
+                    q: robot.into_q(),
                     reports,
                     steps,
                     time,
@@ -69,7 +71,8 @@ impl TaskServo {
                     nearest,
                 });
             }
-            self.advance(&mut q);
+            let close = |q: &mut [f64]| self.close(q);
+            robot.follow(self.mechanism(), self.joint_velocities(), dt, close);
             steps += 1;
         }
     }

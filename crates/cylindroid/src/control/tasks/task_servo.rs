@@ -22,7 +22,9 @@ use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
 use crate::collision::{CollisionModel, NearPair};
-use crate::control::servo::{BrakingState, StallDetector, Status, limits_of_loop_joints};
+use crate::control::servo::{
+    BrakingState, Plant, Predictor, StallDetector, Status, limits_of_loop_joints,
+};
 use crate::control::solver::active_set::{ActiveSet, Level};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
@@ -107,6 +109,8 @@ pub struct TaskServo {
     lowest_velocities: Vec<f64>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
+    /// Of a robot that is not ideal.
+    predictor: Option<Predictor>,
 }
 
 impl TaskServo {
@@ -125,6 +129,7 @@ impl TaskServo {
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))
             .map(|mut limits| {
+                options.plant.keep_off(&mut limits);
                 if limits.acceleration == f64::INFINITY {
                     limits.acceleration = options.acceleration;
                 }
@@ -138,6 +143,7 @@ impl TaskServo {
             .map(|task| {
                 let m = task.objective.rows();
                 TaskRows {
+                    measured_error: vec![0.0; m],
                     error: vec![0.0; m],
                     feed_forward: vec![0.0; m],
                     jacobian: Matrix::zeros(m, n),
@@ -203,6 +209,7 @@ impl TaskServo {
             lowest_velocities: vec![0.0; n],
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
+            predictor: Predictor::new(mechanism, options.plant, options.dt),
             tasks,
             options,
         })
@@ -277,9 +284,20 @@ impl TaskServo {
         self.motions.close(q);
     }
 
+    pub(super) fn close(&self, q: &mut [f64]) {
+        self.motions.close(q);
+    }
+
+    pub(super) const fn plant(&self) -> Plant {
+        self.options.plant
+    }
+
     /// Resets the servo to rest: it is as a new one with the present tasks.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
+        if let Some(predictor) = &mut self.predictor {
+            predictor.reset();
+        }
         self.detectors.fill(StallDetector::new());
         self.set.reset();
         for stack in &mut self.stacks {
@@ -304,13 +322,21 @@ impl TaskServo {
             }
         }
         self.state.set(self.motions.close_measured(q)?)?;
-        for (task, rows) in self.tasks.iter_mut().zip(&mut self.rows) {
-            let mut rows = Rows {
-                error: &mut rows.error,
-                feed_forward: &mut rows.feed_forward,
-                jacobian: &mut rows.jacobian,
-            };
-            task.objective.evaluate(&task.name, &self.state, &mut self.scratch, &mut rows)?;
+        self.evaluate()?;
+        for rows in &mut self.rows {
+            rows.measured_error.copy_from_slice(&rows.error);
+        }
+        if let Some(predictor) = &mut self.predictor {
+            predictor.note(self.state.q());
+            let lag = predictor.plant().lag();
+            let predicted = predictor.predict(self.state.mechanism());
+            self.state.set(self.motions.close_measured(predicted)?)?;
+            self.evaluate()?;
+            // To the target after that time.
+            for rows in &mut self.rows {
+                let places = rows.error.iter_mut().zip(&rows.feed_forward);
+                places.for_each(|(error, forward)| *error += lag * forward);
+            }
         }
         self.motions.load(&self.rows, self.options.length, self.options.dt)?;
         self.load_bounds();
@@ -319,8 +345,25 @@ impl TaskServo {
         self.solve();
         Error::check_finite("joint velocities", &self.last)?;
         let braking = self.store()?;
+        if let Some(predictor) = &mut self.predictor {
+            let mechanism = self.state.mechanism();
+            predictor.record(mechanism, &self.rates[..mechanism.n()]);
+        }
         self.report(braking);
         Ok(self.status())
+    }
+
+    /// Error, feed-forward velocity and Jacobian of all tasks at the configuration of the state.
+    fn evaluate(&mut self) -> Result<()> {
+        for (task, rows) in self.tasks.iter_mut().zip(&mut self.rows) {
+            let mut rows = Rows {
+                error: &mut rows.error,
+                feed_forward: &mut rows.feed_forward,
+                jacobian: &mut rows.jacobian,
+            };
+            task.objective.evaluate(&task.name, &self.state, &mut self.scratch, &mut rows)?;
+        }
+        Ok(())
     }
 
     /// The status of all tasks after the last step, as [`TaskServo::step`] returns it.
@@ -406,7 +449,7 @@ impl TaskServo {
                 let all = self.gradient.iter().zip(coordinates);
                 all.for_each(|(x, coordinate)| add(coordinate.kind.is_length(), *x));
             }
-            let own = rows.error.iter().enumerate();
+            let own = rows.measured_error.iter().enumerate();
             own.for_each(|(r, x)| add(task.objective.is_length(r), *x));
             let [position_error, orientation_error] = parts.map(f64::sqrt);
             let own = |stack: &Stack| stack.members.iter().position(|m| m.task == i);

@@ -13,6 +13,7 @@ mod limits;
 mod measured;
 mod moving;
 mod object;
+mod plant;
 mod projection;
 mod reconfiguration;
 mod reference_point;

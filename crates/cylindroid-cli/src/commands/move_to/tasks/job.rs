@@ -168,6 +168,7 @@ fn options(args: &MoveArgs, robot: &Mechanism) -> anyhow::Result<TaskServoOption
     set(&mut options.dt, args.servo.dt);
     set(&mut options.length, args.servo.length);
     set(&mut options.acceleration, args.servo.acceleration);
+    options.plant = args.servo.plant();
     set(&mut options.eps, args.inverse.named.parameters.0.get("eps").copied());
     match &args.servo.joint_weights {
         None => {}
