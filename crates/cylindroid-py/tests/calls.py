@@ -64,6 +64,11 @@ BARS = {"q": FIVE_BAR.home, "actuated": ["q1", "q2"], "reference": "reference"}
 WEIGHTS = {"Wu": [1.0, 2, 3], "Wq": [1.0, 2]}
 FORCES = {"Ww": [1.0, 2, 3], "Wtau": [1.0, 2], "Wt": np.ones(6)}
 GOAL = {"tool": np.eye(4), "task": "pose", "task_axes": "world", "fixed": ["panda_joint1"]}
+GOALS = {
+    "tasks": [cy.GazeTask("hand_tcp", [0.6, 0.2, 0.0])],
+    "half_spaces": [cy.HalfSpace("link4", [0.0, 0, -1], [0.0, 0, 1])],
+    "posture": [0.0] * 7,
+}
 TOLERANCES = {"tolerance_position": 1e-5, "tolerance_orientation": 1e-5, "seed": 1, "iterations": 99}
 SPEEDS = {"speed": 1.0, "acceleration": [1.0, 2], "jerk": 9.0}
 
@@ -321,10 +326,10 @@ def methods(grip):
         ("constraint", FIVE_BAR, {**BARS, "length": 1.0}),
         ("ik", PANDA,
          {"target": POSE, "frame": "flange", "q0": q, **GOAL, "nearest": False,
-          "weights": None, "collisions": None, **TOLERANCES}),
+          "weights": None, **GOALS, "collisions": None, **TOLERANCES}),
         ("ik_all", PANDA,
          {"target": POSE, "count": 2, "frame": "flange", "q0": q, **GOAL,
-          "weights": None, "collisions": None, **TOLERANCES}),
+          "weights": None, **GOALS, "collisions": None, **TOLERANCES}),
         ("assembly_modes", FIVE_BAR,
          {"guess": FIVE_BAR.home, "hold": ["q1", "q2"], "starts": 2, "seed": 1}),
         ("inverse", PANDA,

@@ -172,6 +172,67 @@ def test_solutions_keep_a_gap_and_misses_have_reasons():
     assert not one.success and "wall" in repr(one)
 
 
+def test_goals_beside_frames():
+    r = cy.load("panda")
+    q = [0.3, -0.4, 0.2, -2.0, 0.1, 1.7, 0.5]
+    seen = np.linalg.inv(r.fk(q, "link4")) @ r.fk(q)
+    point = np.array([0.6, 0.2, 0.0])
+    tasks = [cy.GazeTask(r.tool, point), cy.RelativeFrameTask(r.tool, "link4", seen, weight=2.0)]
+    found = r.ik(tasks=tasks)
+    assert found.success and isinstance(found.position_error, float)
+    hand = r.fk(found.q)
+    way = point - hand[:3, 3]
+    np.testing.assert_allclose(hand[:3, 2], way / np.linalg.norm(way), atol=1e-5)
+    np.testing.assert_allclose(np.linalg.inv(r.fk(found.q, "link4")) @ hand, seen, atol=1e-5)
+    # Beside targets, also many of them.
+    heights = np.array([r.fk(q)] * 3)
+    heights[:, 2, 3] += [0.0, 0.05, 0.1]
+    found = r.ik(heights, task="z", tasks=tasks[:1])
+    assert found.success.all()
+    np.testing.assert_allclose(r.fk(found.q)[:, 2, 3], heights[:, 2, 3], atol=1e-5)
+    assert r.ik_all(tasks=tasks, count=3).shape == (3, 7)
+    # A goal that the limits do not permit.
+    narrow = r.with_limits({"panda_joint1": {"lower": -0.1, "upper": 0.1}})
+    behind = cy.FrameTask(r.tool, np.diag([1, -1, -1, 1]) + [[0, 0, 0, -0.4], *[[0] * 4] * 3],
+                          components="position")
+    assert not narrow.ik(tasks=[behind], iterations=500).success
+    for call, words in [
+        (lambda: r.ik(), "target"),
+        (lambda: r.ik(tasks=[]), "tasks"),
+        (lambda: r.ik(tasks=tasks, frame="link4"), "belongs to target"),
+        (lambda: r.ik(tasks=[cy.LimitAvoidanceTask()]), "limit_avoidance"),
+        (lambda: r.ik(tasks=[cy.PostureTask(q), *tasks], posture=q), "PostureTask"),
+        (lambda: r.ik(tasks=[cy.PostureTask(q)]), "goals"),
+    ]:
+        with pytest.raises(cy.InvalidOptionError, match=words):
+            call()
+    with pytest.raises(cy.ModelError, match="without mass"):
+        r.ik(tasks=[cy.CenterOfMassTask([0, 0, 0.5])])
+
+
+def test_half_spaces_and_postures():
+    r = cy.load("panda")
+    q = np.array([0.3, -0.4, 0.2, -2.0, 0.1, 1.7, 0.5])
+    elbow = r.fk(q, "link4")[:3, 3]
+    free = r.ik(r.fk(q), q0=q, nearest=True)
+    assert np.allclose(free.q, q, atol=1e-4)
+    beside = cy.HalfSpace("link4", elbow + [0, 0.05, 0], [0, 1, 0], name="beside")
+    found = r.ik(r.fk(q), q0=q, nearest=True, half_spaces=[beside])
+    assert found.success
+    np.testing.assert_allclose(r.fk(found.q, "link4")[1, 3], elbow[1] + 0.05, atol=1e-5)
+    wall = cy.HalfSpace(r.tool, [0.9, 0, 0], [1, 0, 0], name="wall")
+    found = r.ik(r.fk(q), half_spaces=[wall])
+    assert not found.success and found.reason.startswith("half-space") and "wall" in found.reason
+    # The posture counts, whatever the start is.
+    near = q + 0.05
+    for tasks, posture in [(None, near), ([cy.PostureTask(near)], None)]:
+        found = r.ik(r.fk(q), q0=r.home, tasks=tasks, posture=posture)
+        best = r.ik(r.fk(q), q0=near, nearest=True)
+        assert found.success and np.allclose(found.q, best.q, atol=1e-3)
+    with pytest.raises(cy.DimensionError):
+        r.ik(r.fk(q), posture=[0.0])
+
+
 def test_what_cannot_be_reached():
     r = cy.load("panda")
     far = np.eye(4)

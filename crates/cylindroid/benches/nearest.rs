@@ -1,16 +1,20 @@
-//! Times of the nearest solution of inverse kinematics, and of targets without one:
+//! Times of the nearest solution of inverse kinematics, and of targets without one; its distance
+//! against that of a search of 1000 starts:
 //! `cargo bench -p cylindroid --bench nearest -- [file.urdf:frame ...]`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use cylindroid::ik::{Goal, IkOptions, Solver};
+use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::model::Coordinate;
 use cylindroid::{EndEffector, Mechanism, Vec3, catalogue};
 
 /// Targets of a row of the table.
 const TARGETS: usize = 400;
+/// Targets of the comparison with many starts, and its starts.
+const COMPARED: usize = 1000;
+const STARTS: usize = 1000;
 
 fn main() {
     let files = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
@@ -21,12 +25,60 @@ fn main() {
         let tool = robot.tool();
         rows(name, &robot, tool.into());
     }
+    let all = std::env::args().any(|a| a == "--compare");
+    if all {
+        println!("| robot | targets | starts | closer | farther | farther by [rad] |");
+        println!("|---|---:|---:|---:|---:|---:|");
+        for name in ["panda", "iiwa14"] {
+            against_starts(name, &catalogue::load(name).unwrap());
+        }
+    }
     for file in files {
         let (path, frame) = file.rsplit_once(':').unwrap();
         let robot = cylindroid::load(path).unwrap();
         let frame = robot.frame(frame).unwrap();
         rows(robot.name(), &robot, frame.into());
     }
+}
+
+/// The distance of the nearest solution against that of the best of many random starts, each
+/// followed along its self-motion.
+fn against_starts(name: &str, robot: &Mechanism) {
+    let mut draw = drawn(robot);
+    let tool = robot.tool();
+    let (mut closer, mut farther, mut most, mut least_starts) = (0, 0, 0.0_f64, usize::MAX);
+    for _ in 0..COMPARED {
+        let start = draw();
+        let target = robot.state(&draw()).unwrap().pose(tool);
+        let goals = [Goal::pose(tool, target)];
+        let far = |q: &[f64]| {
+            let squares = q.iter().zip(&start).map(|(a, b)| (a - b) * (a - b));
+            squares.sum::<f64>().sqrt()
+        };
+        let mut budget = Budget { iterations: 20_000, time: None };
+        let options = |budget| {
+            let initial_guess = Some(start.clone());
+            IkOptions { nearest: true, initial_guess, budget, ..IkOptions::default() }
+        };
+        let mut solver = Solver::new(robot, &goals, &options(budget)).unwrap();
+        let own = far(&solver.solve(&goals).unwrap().q);
+        let (mut best, mut starts) = (f64::INFINITY, 0);
+        while starts < STARTS {
+            let mut solver = Solver::new(robot, &goals, &options(budget)).unwrap();
+            let found = solver.solve_distinct(&goals, usize::MAX).unwrap();
+            starts = found.iter().map(|s| s.restarts).max().unwrap_or(0);
+            best = found.iter().map(|s| far(&s.q)).fold(best, f64::min);
+            budget.iterations *= 2;
+        }
+        closer += usize::from(own < best - 1e-4);
+        if own > best + 1e-4 {
+            farther += 1;
+            println!("farther by {:.4}: {own:.4}, start {start:?}, target {target:?}", own - best);
+        }
+        most = most.max(own - best);
+        least_starts = least_starts.min(starts);
+    }
+    println!("| {name} | {COMPARED} | {least_starts} | {closer} | {farther} | {most:.4} |");
 }
 
 fn rows(name: &str, robot: &Mechanism, tool: EndEffector) {
@@ -48,7 +100,7 @@ fn rows(name: &str, robot: &Mechanism, tool: EndEffector) {
                 }
                 _ => {}
             }
-            let goal = Goal { target, ..first };
+            let goal = Goal::pose(tool, target);
             solver.set_initial_guess(&start).unwrap();
             let begin = Instant::now();
             let found = solver.solve(&[goal]).unwrap();

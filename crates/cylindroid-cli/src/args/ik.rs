@@ -1,5 +1,7 @@
 //! The arguments of `ik`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
@@ -17,8 +19,9 @@ printed with the reason: the target is farther away than the arm is long (which 
 is none), bodies are too close in every solution found, a solution exists outside the position \
 limits, or none of these.
 
-With --task FRAME=X,Y,Z several frames are brought to their targets at once. With --avoid or \
---obstacle links keep a distance from each other and from obstacles.
+With --task FRAME=X,Y,Z several frames are brought to their targets at once; --tasks reads a file \
+of goals, the one of `move`. With --avoid or --obstacle links keep a distance from each other and \
+from obstacles.
 
 Exit code 0 if the target is reached, 1 if not, 2 on an error.";
 
@@ -28,6 +31,11 @@ Examples:
   cylindroid ik ur5e --to 0.3,0.4,0.5 --rpy 3.1416,0,0 --all 8
   cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest
   cylindroid ik docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
+
+A file of tasks has [[task]] tables of type \"frame\", \"relative_frame\", \"center_of_mass\" or \
+\"gaze\", which a solution reaches all, with a weight where not all can be reached; one \"posture\", \
+to which the solution is the closest one; and tables [[half_space]] and [[box]], see `move --help`. \
+Gains, levels, velocities and tolerances of tasks do not count here.
 
 An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
 
@@ -84,29 +92,38 @@ pub(crate) struct IkArgs {
     #[command(flatten)]
     pub(crate) target: TargetArgs,
 
+    /// File of goals, half-spaces and a posture, see below
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) tasks: Option<PathBuf>,
+
     /// Return the solution closest to --q
-    #[arg(long)]
+    #[arg(long, help_heading = "Search")]
     pub(crate) nearest: bool,
 
     /// Return up to N distinct solutions, the closest to --q first
     #[arg(long, value_name = "N", conflicts_with = "nearest", allow_negative_numbers = true)]
+    #[arg(help_heading = "Search")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) all: Option<usize>,
 
     /// Seed for the random restarts
     #[arg(long, value_name = "SEED", default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(help_heading = "Search")]
     pub(crate) seed: u64,
 
     /// Position tolerance of a solution [m]
     #[arg(long, value_name = "M", default_value_t = 1e-6, allow_hyphen_values = true)]
+    #[arg(help_heading = "Search")]
     pub(crate) tolerance_position: f64,
 
     /// Orientation tolerance of a solution [rad]
     #[arg(long, value_name = "RAD", default_value_t = 1e-6, allow_hyphen_values = true)]
+    #[arg(help_heading = "Search")]
     pub(crate) tolerance_orientation: f64,
 
     /// Iteration limit, over all restarts
     #[arg(long, value_name = "N", default_value_t = 20_000, allow_negative_numbers = true)]
+    #[arg(help_heading = "Search")]
     pub(crate) iterations: usize,
 
     #[command(flatten)]

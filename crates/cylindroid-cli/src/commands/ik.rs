@@ -1,25 +1,30 @@
-//! `ik`: configurations that place a frame at a target.
+//! `ik`: configurations that reach goals: frames, relative frames, the centre of mass, gaze.
+
+mod goals;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use cylindroid::Error;
-use cylindroid::ik::{Budget, FoundBy, Goal, IkOptions, MissReason, Solution, Solver, Task};
-use cylindroid::model::Mechanism;
+use cylindroid::ik::{Budget, FoundBy, IkOptions, MissReason, Solution, Solver, Task};
 use serde::Serialize;
 
-use super::target::{errors, target_pose, task};
+use self::goals::{GoalJson, Goals, controlled, first_frame, goals};
+use super::target::errors;
 use crate::args::IkArgs;
 use crate::commands::distance::collision_model;
-use crate::commands::shared::{Style, answer, configuration, end_effector, limited};
+use crate::commands::shared::{Style, answer, configuration, limited};
 use crate::output::{self, Align, PoseJson, number};
 
 #[derive(Debug, Serialize)]
 struct IkJson<'a> {
     model: &'a str,
-    frame: &'a str,
+    /// Of the first goal, if it is a frame.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frame: Option<&'a str>,
     /// The tool point, in axes of the frame [m].
-    tool: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tool: Option<[f64; 3]>,
     joint_names: Vec<&'a str>,
     success: bool,
     /// The first solution; without success the closest configuration found.
@@ -43,13 +48,20 @@ struct IkJson<'a> {
     /// Least distance of bodies [m], if distances are kept.
     #[serde(skip_serializing_if = "Option::is_none")]
     gap: Option<f64>,
-    /// All frames with their targets, if there are several.
+    /// All goals, if there are several or the one is no frame.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     goals: Vec<GoalJson<'a>>,
+    /// The names of the half-spaces that tool points must not leave.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    half_spaces: Vec<&'a str>,
+    /// The posture that solutions approach.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    posture: Option<&'a [f64]>,
     /// All solutions.
     solutions: Vec<&'a [f64]>,
     start: &'a [f64],
-    target: PoseJson,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    target: Option<PoseJson>,
 }
 
 #[derive(Debug, Serialize)]
@@ -68,12 +80,15 @@ struct ReachJson {
 /// The reason for a miss, in words and as data.
 #[derive(Debug, Default, Serialize)]
 struct ReasonJson {
-    /// "out of reach", "collision", "limits" or "not proven".
+    /// "out of reach", "collision", "half-space", "limits" or "not proven".
     kind: &'static str,
     message: String,
     /// Coordinates outside whose limits there is a solution.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     joints: Vec<String>,
+    /// Half-spaces outside of which there is a solution.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    half_spaces: Vec<String>,
     /// Two bodies that are too close, and their distance [m].
     #[serde(skip_serializing_if = "Option::is_none")]
     between: Option<[String; 2]>,
@@ -86,6 +101,7 @@ impl From<&MissReason> for ReasonJson {
         let mut json = Self { kind: reason.name(), message: reason.to_string(), ..Self::default() };
         match reason {
             MissReason::Limits { joints } => json.joints.clone_from(joints),
+            MissReason::HalfSpaces { names } => json.half_spaces.clone_from(names),
             MissReason::Collision { between, distance } => {
                 (json.between, json.distance) = (Some(between.clone()), Some(*distance));
             }
@@ -95,57 +111,10 @@ impl From<&MissReason> for ReasonJson {
     }
 }
 
-/// A frame and its target.
-#[derive(Debug, Serialize)]
-struct GoalJson<'a> {
-    frame: &'a str,
-    components: Vec<&'static str>,
-    target: PoseJson,
-}
-
-/// The target of the arguments, if there is one, and those of frames; with the first in words.
-fn goals(args: &IkArgs, robot: &Mechanism, start: &[f64]) -> anyhow::Result<(Vec<Goal>, String)> {
-    let degrees = args.configuration.degrees;
-    let given = &args.target;
-    let frames = given.frame_tasks()?;
-    let is_given = given.to.is_some()
-        || given.rpy.is_some()
-        || given.quaternion.is_some()
-        || given.rotation_vector.is_some();
-    let mut goals = Vec::new();
-    let mut words = Vec::new();
-    if is_given || frames.is_empty() {
-        let end_effector = end_effector(robot, &args.frame)?;
-        let (task, what) = task(given, None, robot)?;
-        let from = robot.state(start)?.pose(end_effector);
-        let target = target_pose(given, from, degrees, ", or with --task FRAME=X,Y,Z")?;
-        goals.push(Goal { task, ..Goal::pose(end_effector, target) });
-        words.push(what);
-    } else if args.frame.frame.is_some() || args.frame.tool.is_some() {
-        let option = if args.frame.frame.is_some() { "--frame" } else { "--tool" };
-        anyhow::bail!("{option}: there is no target for it; add --to or an orientation");
-    }
-    for frame in &frames {
-        let task = if frame.rpy.is_some() { Task::POSE } else { Task::POSITION };
-        let goal = Goal::pose(robot.frame(&frame.frame)?, frame.target(degrees));
-        goals.push(Goal { task, ..goal });
-        let what = if frame.rpy.is_some() { "position and orientation" } else { "position only" };
-        words.push(what.to_owned());
-    }
-    if let ([_], [what]) = (goals.as_slice(), words.as_slice()) {
-        let what = what.clone();
-        return Ok((goals, what));
-    }
-    let name = |goal: &Goal| robot.frame_of(goal.end_effector.frame).name.clone();
-    let all = goals.iter().zip(&words).map(|(goal, what)| format!("{}: {what}", name(goal)));
-    let what = all.collect::<Vec<_>>().join("; ");
-    Ok((goals, what))
-}
-
 pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     let robot = limited(cylindroid::load(&args.configuration.model)?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
-    let (goals, what) = goals(args, &robot, &start)?;
+    let Goals { all: goals, description, half_spaces, posture } = goals(args, &robot, &start)?;
     let gap = args.avoidance.gap();
     let gap = gap.map_err(|option| {
         anyhow::anyhow!("{option} has no effect without --avoid or --obstacle")
@@ -155,6 +124,8 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         orientation_tolerance: args.tolerance_orientation,
         initial_guess: Some(start.clone()),
         nearest: args.nearest,
+        posture,
+        half_spaces,
         seed: args.seed,
         budget: Budget { iterations: args.iterations, time: None },
         ..IkOptions::default()
@@ -177,17 +148,14 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         locked: analytic.locked().iter().map(|&c| joint_names[c]).collect(),
     });
     let Some(first) = found.first() else { anyhow::bail!("no configuration was evaluated") };
-    let frame_of = |goal: &Goal| robot.frame_of(goal.end_effector.frame).name.as_str();
-    let several = goals.iter().filter(|_| goals.len() > 1).map(|goal| GoalJson {
-        frame: frame_of(goal),
-        components: components(goal.task),
-        target: goal.target.into(),
-    });
-    let Goal { end_effector, target, .. } = goals[0];
+    let first_frame = first_frame(&goals);
+    let is_alone = goals.len() == 1 && first_frame.is_some();
+    let several = goals.iter().filter(|_| !is_alone).map(|goal| GoalJson::of(goal, &robot));
     let report = IkJson {
         model: robot.name(),
-        frame: frame_of(&goals[0]),
-        tool: end_effector.frame_from_tool.translation.to_array(),
+        frame: first_frame
+            .map(|(end_effector, _)| robot.frame_of(end_effector.frame).name.as_str()),
+        tool: first_frame.map(|(e, _)| e.frame_from_tool.translation.to_array()),
         joint_names,
         success: first.success,
         q: &first.q,
@@ -201,27 +169,17 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         reason: first.reason.as_ref().map(ReasonJson::from),
         gap,
         goals: several.collect(),
+        half_spaces: options.half_spaces.iter().map(|h| h.name.as_str()).collect(),
+        posture: options.posture.as_deref(),
         solutions: found.iter().filter(|s| s.success).map(|s| s.q.as_slice()).collect(),
         start: &start,
-        target: target.into(),
+        target: first_frame.map(|(_, target)| target.into()),
     };
     match style {
         Style::Json => output::json(out, &report)?,
-        Style::Table => print(out, &report, (&what, controlled(&goals)), &found)?,
+        Style::Table => print(out, &report, (&description, controlled(&goals)), &found)?,
     }
     Ok(answer(first.success))
-}
-
-/// The names of the components of a task.
-fn components(task: Task) -> Vec<&'static str> {
-    let named = Task::COMPONENTS.into_iter().zip(task.components);
-    named.filter(|(_, on)| *on).map(|(name, _)| name).collect()
-}
-
-/// The components of all goals together.
-fn controlled(goals: &[Goal]) -> Task {
-    let any = |i: usize| goals.iter().any(|goal| goal.task.components[i]);
-    Task { components: std::array::from_fn(any), ..Task::POSE }
 }
 
 fn print(
@@ -252,8 +210,8 @@ fn print(
         },
     };
     let frames = match report.goals.as_slice() {
-        [] => report.frame.to_owned(),
-        several => several.iter().map(|goal| goal.frame).collect::<Vec<_>>().join(", "),
+        [] => report.frame.unwrap_or_default().to_owned(),
+        several => several.iter().map(GoalJson::name).collect::<Vec<_>>().join(", "),
     };
     let [position_error, orientation_error] =
         errors(task, report.position_error, report.orientation_error);

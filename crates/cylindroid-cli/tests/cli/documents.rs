@@ -13,6 +13,7 @@ use crate::text;
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
 const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
+const GOALS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/goals.toml");
 const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");
 
 /// All commands, as the help lists them.
@@ -118,6 +119,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             with(&["panda"], &UP),
             vec!["panda", "--to", "2,0,0.5"],
             vec![CELL, "--task", "hand_tcp=0.4,0,0.4", "--task", "link4=0,0.1,0.65", "--avoid"],
+            vec!["panda", "--tasks", GOALS],
         ],
         "move" => vec![
             with(&["panda", "--line"], &UP),

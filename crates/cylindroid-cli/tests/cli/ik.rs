@@ -94,3 +94,56 @@ fn solutions_among_obstacles() {
     assert!(report["reason"]["distance"].as_f64().unwrap() < 0.01);
     assert!(refused(&["ik", cell, "--to", "0.4,0,0.4", "--gap", "0.1"]).contains("no effect"));
 }
+
+fn file(folder: &tempfile::TempDir, text: &str) -> String {
+    let path = folder.path().join("goals.toml");
+    std::fs::write(&path, text).unwrap();
+    path.to_string_lossy().into_owned()
+}
+
+#[test]
+fn goals_of_a_file() {
+    let goals = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/goals.toml");
+    let report = json(&["ik", "panda", "--tasks", goals], 0);
+    assert!(report.get("frame").is_none() && report.get("target").is_none());
+    assert_eq!(report["goals"][0]["type"], "gaze");
+    assert_eq!(numbers(&report["goals"][0]["point"]), [0.55, 0.1, 0.0]);
+    assert_eq!(report["goals"][1]["components"][0], "z");
+    assert_eq!(report["half_spaces"][1], "box of hand_tcp +x");
+    assert_eq!(numbers(&report["posture"])[3], -2.0);
+    // By forward kinematics: the height, the box, the direction.
+    let q = numbers(&report["q"]).iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let pose = json(&["fk", "panda", "--q", &q], 0);
+    let at = numbers(&pose["pose"]["position"]);
+    assert!((at[2] - 0.35).abs() < 2e-6, "{at:?}");
+    for (x, (middle, side)) in at.iter().zip([(0.5, 0.2), (0.1, 0.3), (0.3, 0.3)]) {
+        assert!((x - middle).abs() <= 0.5 * side + 2e-6, "{at:?}");
+    }
+    let table = text(&["ik", "panda", "--tasks", goals]);
+    assert!(table.contains("hand_tcp: gaze; hand_tcp: z"), "{table}");
+    // With a target beside it.
+    let both = ["ik", "panda", "--frame", "link4", "--to", "0,0.1,0.65", "--task", "y"];
+    let report = json(&[&both[..], &["--tasks", goals]].concat(), 0);
+    assert_eq!(report["frame"], "link4");
+    assert_eq!(report["goals"].as_array().unwrap().len(), 3);
+}
+
+#[test]
+fn files_of_goals_are_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let wall = "[[half_space]]\nframe = 'hand_tcp'\npoint = [0.9, 0, 0]\nnormal = [1, 0, 0]";
+    let wall = file(&folder, wall);
+    let report = json(&["ik", "panda", "--to", "0.4,0,0.4", "--tasks", &wall], 1);
+    assert_eq!(report["reason"]["kind"], "half-space");
+    assert_eq!(report["reason"]["half_spaces"][0], "half-space of hand_tcp");
+    assert!(refused(&["ik", "panda", "--tasks", &wall]).contains("neither a frame"));
+    let relative = "[[task]]\ntype = 'relative_frame'\nframe = 'hand_tcp'\n\
+                    reference = 'link4'\nxyz = [0.1, 0.0, 0.5]\ncomponents = 'z'";
+    let report = json(&["ik", "panda", "--tasks", &file(&folder, relative)], 0);
+    assert_eq!(report["goals"][0]["reference"], "link4");
+    let center = "[[task]]\ntype = 'center_of_mass'\nxyz = [0, 0, 0.4]";
+    assert!(refused(&["ik", "panda", "--tasks", &file(&folder, center)]).contains("mass"));
+    let gradient = "[[task]]\ntype = 'limit_avoidance'";
+    let message = refused(&["ik", "panda", "--tasks", &file(&folder, gradient)]);
+    assert!(message.contains("limit_avoidance") && message.contains("gaze"), "{message}");
+}

@@ -1002,7 +1002,7 @@ class Mechanism:
     ) -> Assembly: ...
     def ik(
         self,
-        target: ArrayLike | dict[str, ArrayLike],
+        target: ArrayLike | dict[str, ArrayLike] | None = None,
         frame: str | None = None,
         q0: ArrayLike | None = None,
         *,
@@ -1011,6 +1011,9 @@ class Mechanism:
         task_axes: str | None = None,
         nearest: bool = False,
         weights: dict[str, float] | None = None,
+        tasks: Sequence[MotionTask] | None = None,
+        half_spaces: Sequence[HalfSpace] | None = None,
+        posture: ArrayLike | None = None,
         collisions: CollisionAvoidance | None = None,
         fixed: Sequence[str] | None = None,
         tolerance_position: float = 1e-06,
@@ -1020,7 +1023,7 @@ class Mechanism:
     ) -> Solution: ...
     def ik_all(
         self,
-        target: ArrayLike | dict[str, ArrayLike],
+        target: ArrayLike | dict[str, ArrayLike] | None = None,
         count: int = 8,
         frame: str | None = None,
         q0: ArrayLike | None = None,
@@ -1029,6 +1032,9 @@ class Mechanism:
         task: str | dict[str, str] | None = None,
         task_axes: str | None = None,
         weights: dict[str, float] | None = None,
+        tasks: Sequence[MotionTask] | None = None,
+        half_spaces: Sequence[HalfSpace] | None = None,
+        posture: ArrayLike | None = None,
         collisions: CollisionAvoidance | None = None,
         fixed: Sequence[str] | None = None,
         tolerance_position: float = 1e-06,

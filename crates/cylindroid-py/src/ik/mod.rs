@@ -13,7 +13,7 @@ use self::search::Search;
 use crate::arrays::{self, Array, Many, Numbers, Rows};
 use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
-use crate::tasks::PyCollisionAvoidance;
+use crate::tasks::{PyCollisionAvoidance, PyHalfSpace, PyMotionTask};
 
 pub(crate) use solution::PySolution;
 
@@ -32,7 +32,7 @@ fn bodies(
 
 #[pymethods]
 impl PyMechanism {
-    /// A configuration that puts a frame at a target, within all limits.
+    /// A configuration that puts a frame at a target, or reaches several goals, within all limits.
     ///
     /// For six revolute joints of which three axes intersect or are parallel, all solutions are
     /// computed in closed form and the one closest to `q0` is returned. Otherwise a numerical
@@ -41,9 +41,9 @@ impl PyMechanism {
     ///
     /// Parameters
     /// ----------
-    /// target : array_like, (4, 4) or (N, 4, 4), or dict of them by frame
+    /// target : array_like, (4, 4) or (N, 4, 4), or dict of them by frame, optional
     ///     Desired `world_from_tool` (m); a dict gives several frames that must be reached
-    ///     simultaneously.
+    ///     simultaneously. Optional with `tasks`.
     /// frame : str, optional
     ///     Default: `tool`.
     /// q0 : array_like, (n,) or (N, n), optional
@@ -60,6 +60,15 @@ impl PyMechanism {
     /// weights : dict of str to float, optional
     ///     Factors of the errors of frames, for the configuration that is returned where not all can
     ///     be reached. Default: 1.
+    /// tasks : sequence of MotionTask, optional
+    ///     Further goals that a solution reaches: `FrameTask`, `RelativeFrameTask`,
+    ///     `CenterOfMassTask`, `GazeTask`, with their weights; a `PostureTask` is a `posture`. Gains,
+    ///     levels, velocities and tolerances of tasks do not count.
+    /// half_spaces : sequence of HalfSpace, optional
+    ///     Half-spaces that tool points of a solution do not leave, to within `tolerance_position`;
+    ///     see also `HalfSpace.inside_box`.
+    /// posture : array_like, (n,), optional
+    ///     Prefer the solution closest to this configuration. Default: no preference.
     /// collisions : CollisionAvoidance, optional
     ///     A solution keeps the gap between all watched bodies. Default: bodies do not count.
     /// fixed : list of str, optional
@@ -98,14 +107,21 @@ impl PyMechanism {
     /// True
     /// >>> arm.ik(both, task={"link3": "z", arm.tool: "pose"}).success
     /// True
-    #[pyo3(signature = (target, frame = None, q0 = None, *, tool = None, task = None,
-        task_axes = None, nearest = false, weights = None, collisions = None, fixed = None,
+    ///
+    /// The tool looks at a point, above a table:
+    ///
+    /// >>> table = cy.HalfSpace(arm.tool, point=[0, 0, 0.2], normal=[0, 0, 1])
+    /// >>> arm.ik(tasks=[cy.GazeTask(arm.tool, [0.6, 0.2, 0.0])], half_spaces=[table]).success
+    /// True
+    #[pyo3(signature = (target = None, frame = None, q0 = None, *, tool = None, task = None,
+        task_axes = None, nearest = false, weights = None, tasks = None, half_spaces = None,
+        posture = None, collisions = None, fixed = None,
         tolerance_position = 1e-6, tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn ik(
         &self,
         py: Python<'_>,
-        target: Bound<'_, PyAny>,
+        target: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'_>>,
         tool: Option<Numbers<'_>>,
@@ -113,6 +129,9 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
         #[pyo3(from_py_with = argument)] nearest: bool,
         #[pyo3(from_py_with = argument)] weights: Option<Bound<'_, PyDict>>,
+        #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
+        #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
+        posture: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'_, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
@@ -128,6 +147,9 @@ impl PyMechanism {
             weights,
             task_axes,
             fixed,
+            tasks,
+            half_spaces,
+            posture,
             tolerance_position,
             tolerance_orientation,
             seed,
@@ -136,7 +158,7 @@ impl PyMechanism {
         let options = IkOptions { nearest, ..search.options(self)? };
         let bodies = bodies(py, collisions.as_deref())?;
         let starts = q0.as_ref().map(|q0| Rows::of(robot, "q0", q0)).transpose()?;
-        let targets = search.targets(self, &target)?;
+        let targets = search.targets(self, target.as_ref())?;
         if let Some(count) = starts.and_then(|s| s.count)
             && targets.count() != Some(count)
         {
@@ -170,12 +192,13 @@ impl PyMechanism {
     ///
     /// Parameters
     /// ----------
-    /// target : array_like, (4, 4), or dict of them by frame
+    /// target : array_like, (4, 4), or dict of them by frame, optional
+    ///     Optional with `tasks`.
     /// count : int
     ///     Maximum number of solutions. A redundant arm has infinitely many, of which some are
     ///     returned.
-    /// frame, q0, tool, task, task_axes, weights, collisions, fixed
-    ///     As `ik`.
+    /// frame, q0, tool, task, task_axes, weights, tasks, half_spaces, posture, collisions, fixed
+    ///     As `ik`; of a posture the closest solution comes first.
     /// tolerance_position, tolerance_orientation, seed, iterations
     ///     As `ik`.
     ///
@@ -187,14 +210,15 @@ impl PyMechanism {
     /// ------
     /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError, ModelError
     ///     As `ik`.
-    #[pyo3(signature = (target, count = 8, frame = None, q0 = None, *, tool = None, task = None,
-        task_axes = None, weights = None, collisions = None, fixed = None,
+    #[pyo3(signature = (target = None, count = 8, frame = None, q0 = None, *, tool = None,
+        task = None, task_axes = None, weights = None, tasks = None, half_spaces = None,
+        posture = None, collisions = None, fixed = None,
         tolerance_position = 1e-6, tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn ik_all<'py>(
         &self,
         py: Python<'py>,
-        target: Bound<'py, PyAny>,
+        target: Option<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument)] count: usize,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'py>>,
@@ -202,6 +226,9 @@ impl PyMechanism {
         task: Option<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
         #[pyo3(from_py_with = argument)] weights: Option<Bound<'py, PyDict>>,
+        #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
+        #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
+        posture: Option<Numbers<'py>>,
         #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'py, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
@@ -217,6 +244,9 @@ impl PyMechanism {
             weights,
             task_axes,
             fixed,
+            tasks,
+            half_spaces,
+            posture,
             tolerance_position,
             tolerance_orientation,
             seed,
@@ -229,7 +259,7 @@ impl PyMechanism {
             robot.check_q("q0", q0)?;
             options.initial_guess = Some(q0.to_vec());
         }
-        let targets = search.targets(self, &target)?;
+        let targets = search.targets(self, target.as_ref())?;
         if targets.count().is_some() {
             return Err(Failure::option("target", "a batch", "give one pose, (4, 4)"));
         }

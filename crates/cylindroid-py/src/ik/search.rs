@@ -1,8 +1,8 @@
 //! Arguments of inverse kinematics: targets, tolerances, budget.
 
 use cylindroid::Pose;
-use cylindroid::control::Task;
-use cylindroid::ik::{Budget, Goal, IkOptions};
+use cylindroid::control::{Task, goals_of};
+use cylindroid::ik::{Budget, Goal, IkOptions, Objective};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -10,6 +10,7 @@ use crate::arrays::{Many, Numbers};
 use crate::error::{Failure, Result, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
+use crate::tasks::{self, PyHalfSpace, PyMotionTask};
 
 /// One pose or a stack of them.
 fn poses(target: &Numbers<'_>) -> Result<Many<Pose>> {
@@ -20,9 +21,19 @@ fn poses(target: &Numbers<'_>) -> Result<Many<Pose>> {
     Ok(Many::All(all.collect::<cylindroid::Result<_>>()?))
 }
 
-/// Target poses of one or several frames.
+/// The goal with another target, if it is a frame.
+fn aimed_at(goal: &Goal, target: Pose) -> Goal {
+    match goal.objective {
+        Objective::Frame { end_effector, components, .. } => {
+            Goal::frame(end_effector, components, target).with_weight(goal.weight)
+        }
+        _ => *goal,
+    }
+}
+
+/// Target poses of one or several frames, and further goals.
 pub(super) struct Targets {
-    /// One for each frame; their targets are in `poses`.
+    /// First one for each frame, whose targets are in `poses`.
     pub(super) goals: Vec<Goal>,
     /// The same number for each frame.
     poses: Vec<Many<Pose>>,
@@ -36,9 +47,9 @@ impl Targets {
 
     /// The goals of problem i.
     pub(super) fn at(&self, i: usize) -> Vec<Goal> {
-        let aimed =
-            |(goal, poses): (&Goal, &Many<Pose>)| Goal { target: poses.as_slice()[i], ..*goal };
-        self.goals.iter().zip(&self.poses).map(aimed).collect()
+        let aimed = |(goal, poses): (&Goal, &Many<Pose>)| aimed_at(goal, poses.as_slice()[i]);
+        let others = &self.goals[self.poses.len()..];
+        self.goals.iter().zip(&self.poses).map(aimed).chain(others.iter().copied()).collect()
     }
 }
 
@@ -51,6 +62,9 @@ pub(super) struct Search<'a, 'py> {
     pub(super) weights: Option<Bound<'py, PyDict>>,
     pub(super) task_axes: Option<&'a str>,
     pub(super) fixed: Option<Vec<String>>,
+    pub(super) tasks: Option<Vec<Py<PyMotionTask>>>,
+    pub(super) half_spaces: Option<Vec<Py<PyHalfSpace>>>,
+    pub(super) posture: Option<Numbers<'py>>,
     pub(super) tolerance_position: f64,
     pub(super) tolerance_orientation: f64,
     pub(super) seed: u64,
@@ -58,8 +72,25 @@ pub(super) struct Search<'a, 'py> {
 }
 
 impl Search<'_, '_> {
+    /// The goals and the posture of the tasks.
+    fn goals(&self, mechanism: &PyMechanism) -> Result<(Vec<Goal>, Option<Vec<f64>>)> {
+        let tasks = self.tasks.as_deref().unwrap_or_default();
+        Ok(goals_of(&tasks::motion_tasks(&mechanism.inner, tasks)?)?)
+    }
+
     pub(super) fn options(&self, mechanism: &PyMechanism) -> Result<IkOptions> {
+        let posture = self.posture.as_ref().map(|q| q.vector("posture")).transpose()?;
+        let posture = match (posture, self.goals(mechanism)?.1) {
+            (Some(_), Some(_)) => {
+                let reason = "there is a PostureTask as well; give one of them";
+                return Err(Failure::option("posture", "two postures", reason));
+            }
+            (own, other) => own.map(<[f64]>::to_vec).or(other),
+        };
+        let half_spaces = self.half_spaces.as_deref().unwrap_or_default();
         Ok(IkOptions {
+            posture,
+            half_spaces: tasks::half_spaces(&mechanism.inner, half_spaces)?,
             position_tolerance: self.tolerance_position,
             orientation_tolerance: self.tolerance_orientation,
             fixed: mechanism.places(self.fixed.as_deref().unwrap_or_default())?,
@@ -69,12 +100,42 @@ impl Search<'_, '_> {
         })
     }
 
-    /// From poses of the frame, or a dict of poses by frame.
+    /// Of the target and the tasks.
     pub(super) fn targets(
         &self,
         mechanism: &PyMechanism,
-        target: &Bound<'_, PyAny>,
+        target: Option<&Bound<'_, PyAny>>,
     ) -> Result<Targets> {
+        let mut targets = match target {
+            Some(target) => self.frames(mechanism, target)?,
+            None => self.no_frames()?,
+        };
+        targets.goals.extend(self.goals(mechanism)?.0);
+        Ok(targets)
+    }
+
+    /// Without a target there is no argument that belongs to it, and there are tasks.
+    fn no_frames(&self) -> Result<Targets> {
+        let given = [
+            ("frame", self.frame.is_some()),
+            ("tool", self.tool.is_some()),
+            ("task", self.task.is_some()),
+            ("task_axes", self.task_axes.is_some()),
+            ("weights", self.weights.is_some()),
+        ];
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let reason = "it belongs to target, which is missing";
+            return Err(Failure::option(option, "without a target", reason));
+        }
+        if self.tasks.as_ref().is_none_or(Vec::is_empty) {
+            let reason = "give a pose, a dict of poses by frame, or tasks";
+            return Err(Failure::option("target", "None", reason));
+        }
+        Ok(Targets { goals: Vec::new(), poses: Vec::new() })
+    }
+
+    /// From poses of the frame, or a dict of poses by frame.
+    fn frames(&self, mechanism: &PyMechanism, target: &Bound<'_, PyAny>) -> Result<Targets> {
         let by_name = self.task.as_ref().and_then(|task| task.cast::<PyDict>().ok());
         let goal = |frame: Option<&str>| -> Result<Goal> {
             let end_effector = mechanism.end_effector(frame, self.tool.as_ref())?;
@@ -92,8 +153,8 @@ impl Search<'_, '_> {
                 _ => None,
             };
             let weight = weight.map(|weight| entry("weights", &weight)).transpose()?;
-            let goal = Goal::pose(end_effector, Pose::IDENTITY);
-            Ok(Goal { task, weight: weight.unwrap_or(1.0), ..goal })
+            let goal = Goal::frame(end_effector, task, Pose::IDENTITY);
+            Ok(goal.with_weight(weight.unwrap_or(1.0)))
         };
         let Ok(by_frame) = target.cast::<PyDict>() else {
             for (option, given) in [("task", by_name), ("weights", self.weights.as_ref())] {

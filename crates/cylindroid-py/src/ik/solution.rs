@@ -17,7 +17,8 @@ use crate::table::{self, Table};
 /// q : ndarray, (n,) or (N, n)
 ///     The configuration, within the limits; without success the closest one found.
 /// position_error, orientation_error : float or ndarray, (N,)
-///     Of the components of the task (m, rad).
+///     Largest of all goals, in the components of the task, and the distance outside of half-spaces
+///     (m, rad).
 /// analytic : bool or ndarray of bool, (N,)
 ///     True if the solution was computed in closed form.
 /// iterations, restarts : int or ndarray of int, (N,)
@@ -25,8 +26,9 @@ use crate::table::{self, Table};
 ///     True if no solution exists: the target is farther from the first joint than the length of
 ///     the chain. Failure alone does not prove this.
 /// reason : str or None, or list of them
-///     Of a miss: begins with "out of reach" (proven), "collision" (with the two bodies), "limits"
-///     (with the joints: there is a solution outside their position limits) or "not proven".
+///     Of a miss: begins with "out of reach" (proven), "collision" (with the two bodies),
+///     "half-space" (with their names: there is a solution outside), "limits" (with the joints: there
+///     is a solution outside their position limits) or "not proven".
 #[pyclass(frozen, name = "Solution", module = "cylindroid")]
 #[derive(Debug)]
 pub(crate) struct PySolution {

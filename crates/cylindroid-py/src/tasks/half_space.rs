@@ -8,7 +8,8 @@ use super::description::Named;
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result, argument};
 
-/// A half-space of the world that a tool point of a `TaskServo` does not leave.
+/// A half-space of the world that a tool point of a `TaskServo` or a solution of `Mechanism.ik` does
+/// not leave.
 ///
 /// Parameters
 /// ----------

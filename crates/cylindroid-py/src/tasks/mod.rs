@@ -18,3 +18,24 @@ pub(crate) use motion_task::{
 };
 pub(crate) use report::PyTaskReport;
 pub(crate) use task_servo::{PyTaskServo, TaskServoNumbers};
+
+use cylindroid::Mechanism;
+use cylindroid::control::{HalfSpace, MotionTask};
+use pyo3::Py;
+
+use self::custom::Raised;
+use crate::error::Result;
+
+/// The tasks for a mechanism, whose functions are not called.
+pub(crate) fn motion_tasks(
+    robot: &Mechanism,
+    tasks: &[Py<PyMotionTask>],
+) -> Result<Vec<MotionTask>> {
+    let raised = Raised::default();
+    tasks.iter().map(|task| task.get().of(robot, &raised)).collect()
+}
+
+/// The half-spaces for a mechanism.
+pub(crate) fn half_spaces(robot: &Mechanism, all: &[Py<PyHalfSpace>]) -> Result<Vec<HalfSpace>> {
+    all.iter().map(|half_space| half_space.get().of(robot)).collect()
+}

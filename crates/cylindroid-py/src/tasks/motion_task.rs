@@ -11,7 +11,7 @@ use super::description::{Description, Named, moving_target};
 use crate::arrays::Numbers;
 use crate::error::{Failure, Result, argument};
 
-/// A task of a `TaskServo`: `FrameTask`, `RelativeFrameTask`, `CenterOfMassTask`, `GazeTask`,
+/// A task of a `TaskServo` or a goal of `Mechanism.ik`: `FrameTask`, `RelativeFrameTask`, `CenterOfMassTask`, `GazeTask`,
 /// `PostureTask`, `JointVelocitiesTask`, `ManipulabilityTask`, `LimitAvoidanceTask` or `CustomTask`.
 ///
 /// Attributes

@@ -178,8 +178,7 @@ impl PyTaskServo {
             let model = model.try_borrow(py).map_err(in_use)?.inner.clone();
             chosen.collisions = Some(CollisionAvoidance { model, gap: *gap, margin: *margin });
         }
-        let walls = half_spaces.iter().map(|wall| wall.get().of(robot));
-        chosen.half_spaces = walls.collect::<Result<Vec<_>>>()?;
+        chosen.half_spaces = super::half_spaces(robot, half_spaces)?;
         let raised = Raised::default();
         let tasks = tasks.iter().map(|task| task.get().of(robot, &raised));
         let tasks = tasks.collect::<Result<Vec<_>>>()?;

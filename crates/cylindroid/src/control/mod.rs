@@ -40,5 +40,5 @@ pub use servo::{
 pub use solver::{LimitKind, Saturation, VelocityBounds};
 pub use tasks::{
     CollisionAvoidance, CustomTask, HalfSpace, MotionTask, StoppedBy, TaskMotionResult,
-    TaskObjective, TaskReport, TaskServo, TaskServoOptions,
+    TaskObjective, TaskReport, TaskServo, TaskServoOptions, goals_of,
 };

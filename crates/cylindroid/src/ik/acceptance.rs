@@ -5,9 +5,9 @@
 use std::f64::consts::PI;
 
 use super::avoidance::Avoidance;
-use super::convergence::is_reached;
+use super::convergence::{Errors, is_reached};
 use super::solution::{Candidate, FoundBy};
-use super::solve::Solver;
+use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::collision::CollisionModel;
 use crate::error::Result;
 
@@ -64,17 +64,20 @@ impl Solver {
         q: &mut [f64],
         found_by: FoundBy,
     ) -> Result<bool> {
-        if !self.is_solution(q) {
-            return Ok(false);
+        let mut errors = self.solution_errors(q);
+        if errors.is_none() && !self.problem.half_spaces.is_empty() {
+            // Outside of half-spaces: along the self-motion there may be one inside.
+            self.problem.run(q, &self.options, ITERATIONS_PER_RESTART);
+            errors = self.solution_errors(q);
         }
-        if let Some(mut avoidance) = self.avoidance.take() {
+        if errors.is_some()
+            && let Some(mut avoidance) = self.avoidance.take()
+        {
             let free = avoidance.make_free(&mut self.problem, &mut self.descent, q, &self.options);
             self.avoidance = Some(avoidance);
-            if !free? || !self.is_solution(q) {
-                return Ok(false);
-            }
+            errors = if free? { self.solution_errors(q) } else { None };
         }
-        let errors = self.problem.evaluate(q);
+        let Some(errors) = errors else { return Ok(false) };
         if !solutions.iter().any(|other| self.is_same(&other.q, q)) {
             let distance = self.distance(q);
             solutions.push(Candidate { distance, q: q.to_vec(), errors, found_by });
@@ -82,11 +85,14 @@ impl Solver {
         Ok(true)
     }
 
-    fn is_solution(&mut self, q: &[f64]) -> bool {
+    /// The errors of a solution; `None` if it is none.
+    fn solution_errors(&mut self, q: &[f64]) -> Option<Errors> {
         let within = self.problem.mechanism.outside_limits(q).next().is_none();
-        within
-            && q.iter().all(|x| x.is_finite())
-            && is_reached(self.problem.evaluate(q), &self.options)
+        if !within || q.iter().any(|x| !x.is_finite()) {
+            return None;
+        }
+        let errors = self.problem.evaluate(q);
+        is_reached(errors, &self.options).then_some(errors)
     }
 
     fn is_same(&self, a: &[f64], b: &[f64]) -> bool {

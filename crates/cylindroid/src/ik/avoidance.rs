@@ -97,7 +97,10 @@ impl Avoidance {
                 }
             }
             self.model.gradient_into(&self.state, &closest, &mut self.row);
-            let rate = descent.along_solutions(problem, q, &self.desired, &self.row);
+            let rate = {
+                let along = (&self.desired[..], &self.row[..]);
+                descent.along_solutions(problem, q, along, options)
+            };
             let lacks = self.gap + BEYOND - closest.distance;
             let Some(rate) = rate.filter(|rate| *rate > 1e-6 * lacks) else { return Ok(false) };
             let most = problem.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));

@@ -11,7 +11,7 @@
 use std::f64::consts::PI;
 
 use super::analytic::{Analytic, AnalyticSolutions};
-use super::goal::Goal;
+use super::goal::{Goal, Objective};
 use super::options::IkOptions;
 use crate::error::Result;
 use crate::kinematics::{Chain, ReferenceFrame};
@@ -43,15 +43,18 @@ pub(super) struct ClosedForm {
 impl ClosedForm {
     /// `None` if there is no closed form.
     pub(super) fn of(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Option<Self> {
-        let [goal] = goals else { return None };
-        if goal.task.components != Task::POSE.components {
+        let [Goal { objective: Objective::Frame { end_effector, components, .. }, .. }] = *goals
+        else {
+            return None;
+        };
+        if components.components != Task::POSE.components {
             return None;
         }
-        let chain = Chain::new(mechanism, goal.end_effector);
+        let chain = Chain::new(mechanism, end_effector);
         let all = chain.coordinates();
         let free: Vec<_> = (0..all.len()).filter(|&i| !options.fixed.contains(&all[i])).collect();
         let with_locked =
-            |locked: &[usize]| Analytic::with_locked(mechanism, goal.end_effector, locked).ok();
+            |locked: &[usize]| Analytic::with_locked(mechanism, end_effector, locked).ok();
         if free.len() != 7 {
             return Some(Self {
                 analytic: with_locked(&options.fixed)?,

@@ -16,32 +16,26 @@
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
 use super::damped_step::{Damped, DampedProblem};
 use super::goal::Goal;
+use super::goal_rows::{GoalRows, coordinates_of};
+use super::half_space_rows::HalfSpaceRows;
 use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, MAX_COORDINATES};
 use crate::error::{Error, Result};
-use crate::kinematics::Chain;
-use crate::linalg::Matrix;
+use crate::kinematics::{Chain, State};
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::clamp;
-
-/// A goal with its chain.
-#[derive(Debug, Clone)]
-struct Part {
-    goal: Goal,
-    chain: Chain,
-    jacobian: Matrix,
-    /// Indices of the chain's coordinates among those of the problem.
-    places: Vec<usize>,
-    /// Components of the task, and the scale of their rows.
-    rows: Vec<(usize, f64)>,
-}
+use crate::task::HalfSpace;
 
 /// The goals of a mechanism, with workspace.
 #[derive(Debug, Clone)]
 pub(super) struct Problem {
     pub(super) mechanism: Mechanism,
-    parts: Vec<Part>,
-    /// The coordinates that move the end effectors: indices in `q`, ascending.
+    goals: Vec<GoalRows>,
+    pub(super) half_spaces: HalfSpaceRows,
+    /// For goals other than frames, and for half-spaces.
+    pub(super) state: Option<State>,
+    length: f64,
+    /// The coordinates that move the goals: indices in `q`, ascending.
     pub(super) coordinates: Vec<usize>,
     /// Limits of these coordinates.
     pub(super) lower: Vec<f64>,
@@ -62,37 +56,28 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    pub(super) fn new(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Self {
+    pub(super) fn new(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Self> {
         let length = options.length.unwrap_or_else(|| mechanism.reach());
-        let chains: Vec<Chain> =
-            goals.iter().map(|g| Chain::new(mechanism, g.end_effector)).collect();
-        let mut coordinates: Vec<usize> =
-            chains.iter().flat_map(|c| c.coordinates().iter().copied()).collect();
+        let of_half_space =
+            |h: &HalfSpace| Chain::new(mechanism, h.end_effector).coordinates().to_vec();
+        let mut coordinates: Vec<usize> = goals
+            .iter()
+            .flat_map(|goal| coordinates_of(mechanism, goal))
+            .chain(options.half_spaces.iter().flat_map(of_half_space))
+            .collect();
         coordinates.sort_unstable();
         coordinates.dedup();
-        let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
-        let parts: Vec<Part> = goals
-            .iter()
-            .zip(chains)
-            .map(|(goal, chain)| {
-                let rows = (0..6).filter(|&i| goal.task.components[i]);
-                let rows = rows.map(|i| (i, goal.weight * scale(i)));
-                let place = |c: &usize| coordinates.partition_point(|x| x < c);
-                Part {
-                    goal: *goal,
-                    jacobian: Matrix::zeros(6, chain.n()),
-                    places: chain.coordinates().iter().map(place).collect(),
-                    rows: rows.collect(),
-                    chain,
-                }
-            })
-            .collect();
-        let m: usize = parts.iter().map(|p| p.rows.len()).sum();
+        let goals: Vec<GoalRows> =
+            goals.iter().map(|goal| GoalRows::new(mechanism, goal, &coordinates, length)).collect();
+        let half_spaces = HalfSpaceRows::new(mechanism, &options.half_spaces);
+        let needs_state = goals.iter().any(GoalRows::needs_state) || !half_spaces.is_empty();
+        let state = needs_state.then(|| mechanism.state(mechanism.home())).transpose()?;
+        let m = goals.iter().map(|g| g.rows.len()).sum::<usize>() + half_spaces.all.len();
         let n = coordinates.len();
         let all = mechanism.coordinates();
         let simple =
             |&c: &usize| matches!(all[c].kind, CoordinateKind::Angle | CoordinateKind::Length);
-        Self {
+        Ok(Self {
             simple: coordinates.iter().all(simple),
             turns: coordinates.iter().map(|&c| is_back_after_a_turn(mechanism, c)).collect(),
             lower: coordinates.iter().map(|&c| all[c].limits.lower).collect(),
@@ -105,17 +90,20 @@ impl Problem {
             rates: vec![0.0; mechanism.n()],
             damped: Damped::new(m, n),
             mechanism: mechanism.clone(),
-            parts,
+            goals,
+            half_spaces,
+            state,
+            length,
             coordinates,
             m,
-        }
+        })
     }
 
-    /// Sets other targets for the same end effectors.
+    /// Sets other targets of the same objectives.
     pub(super) fn set_goals(&mut self, goals: &[Goal]) -> Result<()> {
-        Error::check_len("goals", self.parts.len(), goals.len())?;
-        for (i, (part, goal)) in self.parts.iter_mut().zip(goals).enumerate() {
-            if (part.goal.end_effector, part.goal.task) != (goal.end_effector, goal.task) {
+        Error::check_len("goals", self.goals.len(), goals.len())?;
+        for (i, (own, goal)) in self.goals.iter_mut().zip(goals).enumerate() {
+            if !own.goal.objective.is_as(&goal.objective) {
                 return Err(Error::InvalidOption {
                     option: "goals",
                     value: format!("goal {i} of another end effector or task"),
@@ -123,10 +111,7 @@ impl Problem {
                         .to_owned(),
                 });
             }
-            for (_, scale) in &mut part.rows {
-                *scale *= goal.weight / part.goal.weight;
-            }
-            (part.goal.target, part.goal.weight) = (goal.target, goal.weight);
+            own.set(goal);
         }
         Ok(())
     }
@@ -134,15 +119,30 @@ impl Problem {
     /// Forward kinematics at `q`; computes the scaled errors.
     pub(super) fn evaluate(&mut self, q: &[f64]) -> Errors {
         let mut errors = Errors { position: 0.0, orientation: 0.0, squared: 0.0 };
+        if let Some(state) = &mut self.state
+            && state.set(q).is_err()
+        {
+            self.e.fill(0.0);
+            return Errors { position: f64::NAN, orientation: f64::NAN, squared: f64::NAN };
+        }
         let mut row = 0;
-        for part in &mut self.parts {
-            let pose = part.chain.set(q);
-            let error = part.goal.task.error(pose, part.goal.target);
+        for goal in &mut self.goals {
+            let error = goal.error(q, self.state.as_ref());
             errors.position = errors.position.max(error.linear.norm());
             errors.orientation = errors.orientation.max(error.angular.norm());
             let error = error.to_array();
-            for &(i, scale) in &part.rows {
+            for &(i, scale) in &goal.rows {
                 self.e[row] = error[i] * scale;
+                errors.squared += self.e[row] * self.e[row];
+                row += 1;
+            }
+        }
+        if let Some(state) = &self.state {
+            self.half_spaces.evaluate(state);
+            for room in &self.half_spaces.rooms {
+                let outside = (-room).max(0.0);
+                errors.position = errors.position.max(outside);
+                self.e[row] = outside / self.length;
                 errors.squared += self.e[row] * self.e[row];
                 row += 1;
             }
@@ -150,23 +150,36 @@ impl Problem {
         errors
     }
 
-    /// Computes A at the configuration evaluated last.
+    /// Computes A at the configuration evaluated last, with the rows of half-spaces that it
+    /// violates.
     pub(super) fn load_jacobian(&mut self) {
-        let m = self.m;
-        if self.parts.len() > 1 {
+        self.load_goals();
+        for i in 0..self.half_spaces.rooms.len() {
+            if self.half_spaces.rooms[i] < 0.0 {
+                self.load_half_space(i);
+            }
+        }
+    }
+
+    /// Computes the rows of the goals in A; those of half-spaces are zero.
+    pub(super) fn load_goals(&mut self) {
+        if self.goals.len() > 1 || self.state.is_some() {
             self.a.fill(0.0);
         }
         let mut first = 0;
-        for part in &mut self.parts {
-            part.chain.jacobian_into(part.goal.task.axes, &mut part.jacobian);
-            for (j, &place) in part.places.iter().enumerate() {
-                let column = part.jacobian.column(j);
-                let out = &mut self.a[place * m + first..][..part.rows.len()];
-                for (x, &(i, scale)) in out.iter_mut().zip(&part.rows) {
-                    *x = column[i] * scale;
-                }
-            }
-            first += part.rows.len();
+        for goal in &mut self.goals {
+            goal.load_jacobian(self.state.as_ref(), (self.m, first), &mut self.a);
+            first += goal.rows.len();
+        }
+    }
+
+    /// Computes the row of half-space i in A.
+    pub(super) fn load_half_space(&mut self, i: usize) {
+        let Some(state) = &self.state else { return };
+        let row = self.m - self.half_spaces.rooms.len() + i;
+        let gradient = self.half_spaces.gradient(i, state);
+        for (j, &c) in self.coordinates.iter().enumerate() {
+            self.a[j * self.m + row] = gradient[c] / self.length;
         }
     }
 
@@ -258,13 +271,15 @@ impl Problem {
 
     /// The problem of batched restarts, if the goals permit them.
     pub(super) fn batched<'a>(&'a self, options: &'a IkOptions) -> Option<BatchedProblem<'a>> {
-        let ([part], n) = (&self.parts[..], self.coordinates.len()) else { return None };
-        let serial = part.chain.serial().filter(|s| s.has_one_for_each(n))?;
+        let ([goal], n) = (&self.goals[..], self.coordinates.len()) else { return None };
+        let (chain, task, target) = goal.frame().filter(|_| self.half_spaces.is_empty())?;
+        let serial = chain.serial().filter(|s| s.has_one_for_each(n))?;
         (self.simple && self.m > 0 && (self.m..=MAX_COORDINATES).contains(&n)).then_some(
             BatchedProblem {
                 serial,
-                goal: &part.goal,
-                rows: &part.rows,
+                task,
+                target,
+                rows: &goal.rows,
                 lower: &self.lower,
                 upper: &self.upper,
                 fixed: &self.fixed,
@@ -275,14 +290,10 @@ impl Problem {
         )
     }
 
-    /// A goal farther from the first joint of its chain than the length of the chain: both (m).
+    /// A frame that is farther from the first joint of its chain than the length of the chain: both
+    /// (m).
     pub(super) fn out_of_reach(&self) -> Option<(f64, f64)> {
-        self.parts.iter().find_map(|part| {
-            let whole = part.goal.task.components[..3] == [true; 3];
-            let far = (part.goal.target.translation - part.chain.first_origin()).norm();
-            let length = part.chain.length_after_first_joint(&self.mechanism);
-            (whole && far > length * (1.0 + 1e-12)).then_some((far, length))
-        })
+        self.goals.iter().find_map(|goal| goal.out_of_reach(&self.mechanism))
     }
 
     /// Refines `q` towards the goals: steps that reduce the error are accepted, otherwise the
@@ -355,8 +366,8 @@ mod tests {
             let (mut same, mut reached, mut total) = (0, 0, 0);
             for round in 0..40 {
                 let target = robot.state(&draw()).unwrap().pose(robot.tool());
-                let goal = Goal { task, ..Goal::pose(robot.tool(), target) };
-                let mut problem = Problem::new(&robot, &[goal], &options);
+                let goal = Goal::frame(robot.tool(), task, target);
+                let mut problem = Problem::new(&robot, &[goal], &options).unwrap();
                 let seeds: [Vec<f64>; LANES] = std::array::from_fn(|_| draw());
                 let all = round % 2 == 0;
                 let mut restarts = seeds.each_ref().map(|seed| {
@@ -420,7 +431,7 @@ mod tests {
         q[2] = 0.3;
         q[3] -= 0.4;
         let goal = Goal::pose(robot.tool(), robot.state(&q).unwrap().pose(robot.tool()));
-        let problem = Problem::new(&robot, &[goal], &options);
+        let problem = Problem::new(&robot, &[goal], &options).unwrap();
         let mut start = [0.0; MAX_COORDINATES];
         start[..7].copy_from_slice(robot.home());
         start[2] = 0.3;

@@ -1,9 +1,9 @@
 //! The reason why inverse kinematics found no solution.
 //!
 //! Method   in this order: the distance of the target exceeds the length of the chain, which proves
-//!          it; solutions were found, but bodies are too close in all of them; without position
-//!          limits there is a solution, from the closest configuration or a few random ones; none
-//!          of these
+//!          it; solutions were found, but bodies are too close in all of them; without half-spaces,
+//!          or without position limits there is a solution, from the closest configuration or a few
+//!          random ones; none of these
 //! Checked  tests/it/ik_misses.rs
 
 use std::f64::consts::PI;
@@ -43,6 +43,10 @@ impl Solver {
         if let Some((distance, length)) = out_of_reach {
             return Ok(miss(q, errors, MissReason::OutOfReach { distance, length }));
         }
+        if let Some(names) = self.solve_outside_half_spaces(&q) {
+            errors = self.problem.evaluate(&q);
+            return Ok(miss(q, errors, MissReason::HalfSpaces { names }));
+        }
         let beyond = self.solve_without_limits(&q);
         let reason = self.reason_by_limits(beyond.as_deref());
         if let (Some(mut beyond), MissReason::NotProven) = (beyond, &reason) {
@@ -50,6 +54,33 @@ impl Solver {
         }
         errors = self.problem.evaluate(&q);
         Ok(miss(q, errors, reason))
+    }
+
+    /// The half-spaces outside of which the goals can be reached within the limits: from `q`, then
+    /// from random configurations.
+    fn solve_outside_half_spaces(&mut self, q: &[f64]) -> Option<Vec<String>> {
+        if self.problem.half_spaces.is_empty() {
+            return None;
+        }
+        self.problem.half_spaces.ignored = true;
+        let mut found = None;
+        for restart in 0..=RESTARTS {
+            let mut next = q.to_vec();
+            if restart > 0 {
+                let mut random = self.options.seed.wrapping_add(restart);
+                self.sample_configuration(&mut next, false, &mut random);
+            }
+            let (errors, _) = self.problem.run(&mut next, &self.options, ITERATIONS_PER_RESTART);
+            if is_reached(errors, &self.options) {
+                found = Some(next);
+                break;
+            }
+        }
+        self.problem.half_spaces.ignored = false;
+        self.problem.evaluate(&found?);
+        let state = self.problem.state.as_ref()?;
+        let names = self.problem.half_spaces.violated(state, self.options.position_tolerance);
+        (!names.is_empty()).then_some(names)
     }
 
     /// A configuration that reaches the goals with or without position limits: from `q`, then from

@@ -1,15 +1,17 @@
 //! Inverse kinematics: configurations that place end effectors at target poses.
 //!
-//! [`solve`] accepts any tree with any number of joints and end effectors, complete poses or some
-//! of their components, and respects all position limits. It returns a configuration verified by
-//! forward kinematics, or the closest one found. Arms of which three axes intersect or are parallel
-//! are solved in closed form for complete poses; [`Analytic`] gives direct access to it.
+//! [`solve`] accepts any tree with any number of joints and any number of goals: complete poses
+//! of frames or some of their components, poses of frames seen from others, the centre of mass,
+//! gaze. It respects all position limits and half-spaces. It returns a configuration verified by
+//! forward kinematics, or the closest one found. Arms of which three axes intersect or are
+//! parallel are solved in closed form for complete poses; [`Analytic`] gives direct access to it.
 //!
-//! Read `goal` and `options`, then `solve`: the closed form (`closed_form`, `analytic`) first, then
-//! random restarts of a damped least-squares iteration (`levenberg_marquardt`), four at once if
-//! possible (`parallel_restarts`). The closest solution is that of `nearest` and `self_motion`;
-//! `acceptance` decides what a solution is, `avoidance` keeps it apart from other bodies, and `miss`
-//! finds the reason where there is none.
+//! Read `goal` and `options`, then `goal_rows` and `half_space_rows` (errors and Jacobians), then
+//! `solve`: the closed form (`closed_form`, `analytic`) first, then random restarts of a damped
+//! least-squares iteration (`levenberg_marquardt`), four at once if possible
+//! (`parallel_restarts`). The closest solution is that of `nearest` and `self_motion`;
+//! `acceptance` decides what a solution is, `avoidance` keeps it apart from other bodies, and
+//! `miss` finds the reason where there is none.
 //!
 //! ```
 //! use cylindroid::ik::{Goal, IkOptions, solve};
@@ -28,6 +30,8 @@ mod closed_form;
 mod convergence;
 mod damped_step;
 mod goal;
+mod goal_rows;
+mod half_space_rows;
 mod levenberg_marquardt;
 mod miss;
 mod nearest;
@@ -38,9 +42,9 @@ mod self_motion;
 mod solution;
 mod solve;
 
-pub use crate::task::Task;
+pub use crate::task::{HalfSpace, Task};
 pub use analytic::{Analytic, AnalyticSolution, AnalyticSolutions, ArmGeometry, NotSolvable};
-pub use goal::Goal;
+pub use goal::{Goal, Objective};
 pub use options::{Budget, IkOptions};
 pub use reason::MissReason;
 pub use solution::{FoundBy, Solution};

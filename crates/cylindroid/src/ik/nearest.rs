@@ -16,11 +16,12 @@ use std::f64::consts::PI;
 
 use super::closed_form::ClosedForm;
 use super::convergence::is_reached;
-use super::goal::Goal;
+use super::goal::{Goal, Objective};
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::error::Result;
 use crate::scalar::clamp;
+use crate::spatial::Pose;
 
 /// Sampling step of the locked joint [rad].
 const STEP: f64 = 0.1;
@@ -59,11 +60,19 @@ impl Sample {
     }
 }
 
+/// The target of the frame whose closed form is in use.
+pub(super) fn target_of(goals: &[Goal]) -> Option<Pose> {
+    match goals {
+        [Goal { objective: Objective::Frame { target, .. }, .. }] => Some(*target),
+        _ => None,
+    }
+}
+
 impl Solver {
     /// If the closest solution is requested: moves along the self-motion towards the initial guess.
-    pub(super) fn approach_start(&mut self, q: &mut [f64], bound: f64) {
+    pub(super) fn approach_preferred(&mut self, q: &mut [f64], bound: f64) {
         if self.options.nearest {
-            self.descent.run(&mut self.problem, (q, &self.start), &self.options, bound);
+            self.descent.run(&mut self.problem, (q, &self.preferred), &self.options, bound);
         }
     }
 
@@ -75,7 +84,7 @@ impl Solver {
         }
         for i in 0..self.problem.coordinates.len() {
             let c = self.problem.coordinates[i];
-            let turns = ((self.start[c] - q[c]) / (2.0 * PI)).round();
+            let turns = ((self.preferred[c] - q[c]) / (2.0 * PI)).round();
             let turned = q[c] + 2.0 * PI * turns;
             let within = (self.problem.lower[i]..=self.problem.upper[i]).contains(&turned);
             let can = self.problem.turns[i] && !self.problem.fixed[i] && within;
@@ -86,7 +95,7 @@ impl Solver {
     }
 
     pub(super) fn distance(&self, q: &[f64]) -> f64 {
-        self.problem.squared_distance(q, &self.start).sqrt()
+        self.problem.squared_distance(q, &self.preferred).sqrt()
     }
 
     /// The closest solutions of all branches of the self-motion of an arm with one redundant joint;
@@ -97,8 +106,9 @@ impl Solver {
         most: usize,
         solutions: &mut Vec<Candidate>,
     ) -> Result<usize> {
-        let (Some(mut formulas), [goal]) = (self.formulas.take(), goals) else { return Ok(0) };
-        let calls = self.sample_self_motion(&mut formulas, (goal, most), solutions);
+        let Some(target) = target_of(goals) else { return Ok(0) };
+        let Some(mut formulas) = self.formulas.take() else { return Ok(0) };
+        let calls = self.sample_self_motion(&mut formulas, (target, most), solutions);
         self.formulas = Some(formulas);
         calls
     }
@@ -111,7 +121,7 @@ impl Solver {
             return Ok(f64::INFINITY);
         }
         self.wrap_angles(q);
-        self.approach_start(q, f64::INFINITY);
+        self.approach_preferred(q, f64::INFINITY);
         let is_added = self.add(solutions, q, FoundBy::Numerical)?;
         Ok(if is_added { self.distance(q) } else { f64::INFINITY })
     }
@@ -119,17 +129,19 @@ impl Solver {
     fn sample_self_motion(
         &mut self,
         formulas: &mut ClosedForm,
-        (goal, most): (&Goal, usize),
+        (target, most): (Pose, usize),
         solutions: &mut Vec<Candidate>,
     ) -> Result<usize> {
-        let Some((locked, range)) = formulas.range_about(&self.start) else { return Ok(0) };
+        let Some((locked, range)) = formulas.range_about(&self.preferred) else { return Ok(0) };
         let places = formulas.analytic.coordinates();
-        let own = self.start[locked];
+        let own = self.preferred[locked];
         let mut samples: Vec<Sample> = Vec::new();
         let mut q = self.start.clone();
         let mut closest = self.first_restart(&mut q, solutions)?;
         q.copy_from_slice(&self.start);
         let (mut best, mut calls) = (closest * closest, 0);
+        // Every sample is a solution.
+        let is_accepted = self.avoidance.is_none() && self.problem.half_spaces.is_empty();
         for k in 0.. {
             let index = if k % 2 == 0 { -(k / 2) } else { (k + 1) / 2 };
             let next = STEP * f64::from((k + 1) / 2);
@@ -149,18 +161,19 @@ impl Solver {
             calls += 1;
             q[locked] = value;
             let sample = |angles: [f64; 6], excluded: f64| {
-                let squares = angles.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2));
+                let squares =
+                    angles.iter().zip(places).map(|(x, c)| (x - self.preferred[c]).powi(2));
                 let far = squares.sum::<f64>() + apart * apart;
                 Sample { index, value, angles, far, excluded }
             };
-            let found = formulas.analytic.solve_with(goal.target, &q, |angles, most| {
+            let found = formulas.analytic.solve_with(target, &q, |angles, most| {
                 if most < NEARLY_WITHIN {
                     samples.push(sample(angles, most));
                 }
             })?;
             for found in found.iter() {
                 let sample = sample(found.q, 0.0);
-                if self.avoidance.is_none() {
+                if is_accepted {
                     best = best.min(sample.far);
                 }
                 samples.push(sample);
@@ -178,14 +191,14 @@ impl Solver {
             for (c, angle) in places.into_iter().zip(sample.angles) {
                 q[c] = angle;
             }
-            if sample.excluded > 0.0 {
-                // On a branch that the limits cut short.
+            if sample.excluded > 0.0 || !self.problem.half_spaces.is_empty() {
+                // On a branch that the limits cut short, or outside of half-spaces.
                 let (errors, _) = self.problem.run(&mut q, &self.options, 12);
                 if !is_reached(errors, &self.options) {
                     continue;
                 }
             }
-            self.approach_start(&mut q, closest * closest);
+            self.approach_preferred(&mut q, closest * closest);
             if self.add(solutions, &mut q, FoundBy::Analytic)? {
                 closest = closest.min(self.distance(&q));
             }

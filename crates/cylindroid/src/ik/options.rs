@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
+use crate::task::HalfSpace;
 use crate::tolerance;
 
 /// Limits of the computation.
@@ -31,6 +32,11 @@ pub struct IkOptions {
     /// Prefer the solution closest to the initial guess over the one found first. Closed-form
     /// solutions are always the closest.
     pub nearest: bool,
+    /// A preferred configuration, all n coordinates: the solution closest to it instead of the one
+    /// closest to the initial guess; implies `nearest`. Coordinates that move no goal are set to it.
+    pub posture: Option<Vec<f64>>,
+    /// Half-spaces of the world that tool points must not leave, to within the position tolerance.
+    pub half_spaces: Vec<HalfSpace>,
     /// Seed of the random restarts: the same seed gives the same solution.
     pub seed: u64,
     /// Limits of the computation.
@@ -47,6 +53,8 @@ impl Default for IkOptions {
             initial_guess: None,
             fixed: Vec::new(),
             nearest: false,
+            posture: None,
+            half_spaces: Vec::new(),
             seed: 0,
             budget: Budget { iterations: 20_000, time: None },
             length: None,
@@ -65,6 +73,10 @@ impl IkOptions {
         if let Some(guess) = &self.initial_guess {
             mechanism.check_q("initial guess", guess)?;
         }
+        if let Some(posture) = &self.posture {
+            mechanism.check_q("posture", posture)?;
+        }
+        self.half_spaces.iter().try_for_each(|half_space| half_space.check(mechanism))?;
         if let Some(&place) = self.fixed.iter().find(|&&i| i >= mechanism.n()) {
             return Err(Error::InvalidOption {
                 option: "fixed",

@@ -11,14 +11,14 @@
 
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
 use super::damped_step::{DampedProblem, by_rows};
-use super::goal::Goal;
 use super::options::IkOptions;
 use crate::kinematics::Serial;
 use crate::kinematics::serial_batched::{self, FrameAtTip, SinCos, tool_offset};
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Avx2, Lanes4};
-use crate::spatial::{AlignedPose, Columns};
+use crate::spatial::{AlignedPose, Columns, Pose};
+use crate::task::Task;
 
 /// Restarts in a batch.
 pub(super) const LANES: usize = 4;
@@ -29,7 +29,8 @@ pub(super) const MAX_COORDINATES: usize = 12;
 #[derive(Debug)]
 pub(super) struct BatchedProblem<'a> {
     pub(super) serial: &'a Serial,
-    pub(super) goal: &'a Goal,
+    pub(super) task: Task,
+    pub(super) target: Pose,
     /// Components of the task, and the scale of their rows.
     pub(super) rows: &'a [(usize, f64)],
     pub(super) lower: &'a [f64],
@@ -184,7 +185,7 @@ fn evaluate<R: SimdFloat>(
                 *out = x[l];
             }
         }
-        let error = batched.goal.task.error(pose.pose(), batched.goal.target);
+        let error = batched.task.error(pose.pose(), batched.target);
         let mut errors = Errors {
             position: error.linear.norm(),
             orientation: error.angular.norm(),
@@ -213,7 +214,7 @@ fn rates<R: SimdFloat>(
     a: &mut [R],
 ) {
     let (joints, m) = (batched.serial.joints(), batched.rows.len());
-    serial_batched::jacobian(batched.serial, batched.goal.task.axes, q, turned, rows);
+    serial_batched::jacobian(batched.serial, batched.task.axes, q, turned, rows);
     for (&(row, scale), i) in batched.rows.iter().zip(0..) {
         let row = &rows[row * joints.len()..][..joints.len()];
         for (joint, x) in joints.iter().zip(row) {

@@ -29,17 +29,23 @@ pub enum MissReason {
         /// The coordinates whose limits that solution violates.
         joints: Vec<String>,
     },
+    /// A solution exists outside half-spaces that tool points must not leave; inside none was found.
+    HalfSpaces {
+        /// The names of the half-spaces that it leaves.
+        names: Vec<String>,
+    },
     /// No solution was found, also without limits; this proves nothing.
     NotProven,
 }
 
 impl MissReason {
-    /// The name: "out of reach", "collision", "limits" or "not proven".
+    /// The name: "out of reach", "collision", "half-space", "limits" or "not proven".
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::OutOfReach { .. } => "out of reach",
             Self::Collision { .. } => "collision",
+            Self::HalfSpaces { .. } => "half-space",
             Self::Limits { .. } => "limits",
             Self::NotProven => "not proven",
         }
@@ -69,6 +75,11 @@ impl fmt::Display for MissReason {
                 f,
                 "limits: a solution exists outside the position limits of {}, none was found within",
                 joints.join(", ")
+            ),
+            Self::HalfSpaces { names } => write!(
+                f,
+                "half-space: a solution exists outside {}, none was found inside",
+                names.join(", ")
             ),
             Self::NotProven => {
                 f.write_str("not proven: none was found, which does not prove that none exists")

@@ -32,6 +32,8 @@ const SHORTER: f64 = 0.25;
 const LONGEST: f64 = 0.6;
 /// The descent ends where |d|^2 is below this share of the squared distance.
 const FLAT: f64 = 1e-9;
+/// A configuration is at the boundary of a half-space within this multiple of the tolerance [-].
+const BOUNDARY: f64 = 10.0;
 /// Levenberg-Marquardt steps per step along the self-motion.
 const CORRECTIONS: usize = 8;
 
@@ -44,6 +46,8 @@ pub(super) struct Descent {
     done: Vec<f64>,
     free_part: Vec<f64>,
     desired: Vec<f64>,
+    /// Half-spaces that the projection keeps.
+    bounding: Vec<bool>,
 }
 
 impl Descent {
@@ -56,6 +60,7 @@ impl Descent {
             done: vec![0.0; problem.m],
             free_part: vec![0.0; n],
             desired: vec![0.0; n],
+            bounding: Vec::new(),
         }
     }
 
@@ -75,7 +80,7 @@ impl Descent {
             for (desired, &c) in self.desired.iter_mut().zip(&problem.coordinates) {
                 *desired = start[c] - q[c];
             }
-            if !self.project(problem, q) {
+            if !self.project(problem, q, options) {
                 return;
             }
             let slope = dot(&problem.d, &problem.d);
@@ -133,24 +138,27 @@ impl Descent {
         &mut self,
         problem: &mut Problem,
         q: &[f64],
-        desired: &[f64],
-        gradient: &[f64],
+        (desired, gradient): (&[f64], &[f64]),
+        options: &IkOptions,
     ) -> Option<f64> {
         problem.evaluate(q);
         self.desired.copy_from_slice(desired);
-        self.project(problem, q).then(|| {
+        self.project(problem, q, options).then(|| {
             problem.coordinates.iter().zip(&problem.d).map(|(&c, d)| gradient[c] * d).sum()
         })
     }
 
     /// Null-space projection d = (1 - A+ A) desired at the configuration evaluated last; false if it
     /// fails.
-    fn project(&mut self, problem: &mut Problem, q: &[f64]) -> bool {
-        problem.load_jacobian();
+    fn project(&mut self, problem: &mut Problem, q: &[f64], options: &IkOptions) -> bool {
+        problem.load_goals();
         let (m, n) = (problem.m, problem.coordinates.len());
+        let half_spaces = problem.half_spaces.all.len();
+        self.bounding.clear();
+        self.bounding.resize(half_spaces, false);
         let damping = DAMPING * dot(&problem.a, &problem.a);
         problem.clamped.copy_from_slice(&problem.fixed);
-        for _ in 0..=n {
+        for _ in 0..=n + half_spaces {
             self.done.fill(0.0);
             for (i, desired) in self.desired.iter().enumerate() {
                 let desired = if problem.clamped[i] { 0.0 } else { *desired };
@@ -165,11 +173,33 @@ impl Descent {
                 return false;
             }
             problem.d.iter_mut().zip(&self.free_part).for_each(|(d, free)| *d = free - *d);
-            if !problem.clamp_at_limits(q) {
+            let is_clamped = problem.clamp_at_limits(q);
+            if !self.add_half_spaces(problem, options) && !is_clamped {
                 break;
             }
         }
         true
+    }
+
+    /// Adds the rows of half-spaces at whose boundary the configuration is, and which the step would
+    /// leave; true if there were any.
+    fn add_half_spaces(&mut self, problem: &mut Problem, options: &IkOptions) -> bool {
+        let mut any = false;
+        for i in 0..self.bounding.len() {
+            let is_near = problem.half_spaces.rooms[i] < BOUNDARY * options.position_tolerance;
+            if self.bounding[i] || !is_near {
+                continue;
+            }
+            let Some(state) = &problem.state else { continue };
+            let gradient = problem.half_spaces.gradient(i, state);
+            let moves = problem.coordinates.iter().zip(&problem.d);
+            if moves.map(|(&c, d)| gradient[c] * d).sum::<f64>() < 0.0 {
+                problem.load_half_space(i);
+                self.bounding[i] = true;
+                any = true;
+            }
+        }
+        any
     }
 }
 

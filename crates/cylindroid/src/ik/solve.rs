@@ -22,6 +22,7 @@ use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES};
 use super::convergence::{Errors, is_reached};
 use super::goal::{Goal, check_all};
 use super::levenberg_marquardt::Problem;
+use super::nearest::target_of;
 use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
 use super::self_motion::Descent;
@@ -52,12 +53,13 @@ const PERTURBATION: f64 = 1.0;
 /// // Points on a line, each solution the initial guess of the next.
 /// let robot = cylindroid::load("panda")?;
 /// let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
-/// let mut goal = Goal::pose(robot.tool(), robot.state(&q)?.pose(robot.tool()));
+/// let mut target = robot.state(&q)?.pose(robot.tool());
+/// let goal = Goal::pose(robot.tool(), target);
 /// let mut solver = Solver::new(&robot, &[goal], &IkOptions::default())?;
 /// for _ in 0..5 {
-///     goal.target.translation = goal.target.translation + Vec3::Z * 0.01;
+///     target.translation = target.translation + Vec3::Z * 0.01;
 ///     solver.set_initial_guess(&q)?;
-///     let found = solver.solve(&[goal])?;
+///     let found = solver.solve(&[Goal::pose(robot.tool(), target)])?;
 ///     assert!(found.success);
 ///     q = found.q;
 /// }
@@ -69,6 +71,8 @@ pub struct Solver {
     pub(super) formulas: Option<ClosedForm>,
     pub(super) options: IkOptions,
     pub(super) start: Vec<f64>,
+    /// The configuration from which distances are measured: the initial guess, or the posture.
+    pub(super) preferred: Vec<f64>,
     pub(super) descent: Descent,
     pub(super) avoidance: Option<Avoidance>,
 }
@@ -139,12 +143,38 @@ impl Solver {
     pub fn new(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Self> {
         options.check(mechanism)?;
         check_all(mechanism, goals)?;
-        let problem = Problem::new(mechanism, goals, options);
-        let mut start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
-        problem.clamp(&mut start);
+        let problem = Problem::new(mechanism, goals, options)?;
+        let start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
         let formulas = ClosedForm::of(mechanism, goals, options);
         let descent = Descent::new(&problem);
-        Ok(Self { problem, formulas, options: options.clone(), start, descent, avoidance: None })
+        let nearest = options.nearest || options.posture.is_some();
+        let mut solver = Self {
+            problem,
+            formulas,
+            options: IkOptions { nearest, ..options.clone() },
+            preferred: start.clone(),
+            start,
+            descent,
+            avoidance: None,
+        };
+        solver.load_start();
+        Ok(solver)
+    }
+
+    /// Clamps the initial guess to the limits; the configuration from which distances are measured
+    /// follows.
+    fn load_start(&mut self) {
+        if let Some(posture) = &self.options.posture {
+            for (c, x) in self.start.iter_mut().enumerate() {
+                let is_free = !self.options.fixed.contains(&c);
+                if is_free && self.problem.coordinates.binary_search(&c).is_err() {
+                    *x = posture[c];
+                }
+            }
+        }
+        self.problem.clamp(&mut self.start);
+        self.preferred.copy_from_slice(self.options.posture.as_ref().unwrap_or(&self.start));
+        self.problem.clamp(&mut self.preferred);
     }
 
     /// The closed form used by this solver, if any; of seven joints it locks one, whose value is
@@ -171,7 +201,7 @@ impl Solver {
     pub fn set_initial_guess(&mut self, q: &[f64]) -> Result<()> {
         self.problem.mechanism.check_q("initial guess", q)?;
         self.start.copy_from_slice(q);
-        self.problem.clamp(&mut self.start);
+        self.load_start();
         Ok(())
     }
 
@@ -251,7 +281,7 @@ impl Solver {
                     solver.wrap_angles(q);
                     let distances = solutions.iter().map(|s| s.distance);
                     let best = distances.fold(f64::INFINITY, f64::min);
-                    solver.approach_start(q, if nearest { best * best } else { f64::INFINITY });
+                    solver.approach_preferred(q, if nearest { best * best } else { f64::INFINITY });
                     solver.add(&mut solutions, q, FoundBy::Numerical)?;
                 } else if errors.squared.is_finite()
                     && best.as_ref().is_none_or(|(_, e)| errors.squared < e.squared)
@@ -349,7 +379,8 @@ impl Solver {
                 return Ok((Remaining::Unlikely, calls));
             }
         }
-        let (Some(mut formulas), [goal]) = (self.formulas.take(), goals) else {
+        let Some(target) = target_of(goals) else { return Ok((Remaining::Possible, 0)) };
+        let Some(mut formulas) = self.formulas.take() else {
             return Ok((Remaining::Possible, 0));
         };
         let (mut left, mut calls) = (Remaining::Possible, 0);
@@ -361,13 +392,18 @@ impl Solver {
         };
         let mut start = self.start.clone();
         while calls < most && (calls == 0 || !enough(solutions.len())) {
-            let candidates = formulas.solve(goal.target, &mut start, calls)?;
+            let candidates = formulas.solve(target, &mut start, calls)?;
             calls += 1;
             let mut q = start.clone();
             // The closest first: often it suffices.
             let places = formulas.analytic.coordinates();
             let far = |i: &usize| -> f64 {
-                candidates[*i].q.iter().zip(places).map(|(x, c)| (x - self.start[c]).powi(2)).sum()
+                candidates[*i]
+                    .q
+                    .iter()
+                    .zip(places)
+                    .map(|(x, c)| (x - self.preferred[c]).powi(2))
+                    .sum()
             };
             let mut order = [0, 1, 2, 3, 4, 5, 6, 7];
             let order = &mut order[..candidates.len()];
@@ -381,7 +417,7 @@ impl Solver {
                     q[c] = angle;
                 }
                 if candidate.free != [false; 6] {
-                    self.approach_start(&mut q, f64::INFINITY);
+                    self.approach_preferred(&mut q, f64::INFINITY);
                 }
                 self.add(solutions, &mut q, FoundBy::Analytic)?;
             }
@@ -438,7 +474,7 @@ impl Solver {
             let bounded = p.upper[i] - p.lower[i] <= tolerance::WIDEST_RANGE;
             let anywhere = if bounded && !p.turns[i] { f64::INFINITY } else { PI };
             let (middle, spread) =
-                if near { (self.start[c], PERTURBATION) } else { (0.0, anywhere) };
+                if near { (self.preferred[c], PERTURBATION) } else { (0.0, anywhere) };
             let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
             // Limits outside the sampling range leave one end of it.
             q[c] = clamp(lower + (upper - lower) * uniform(random), p.lower[i], p.upper[i]);

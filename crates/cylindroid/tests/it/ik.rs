@@ -1,7 +1,7 @@
 //! Inverse kinematics against forward kinematics.
 
 use cylindroid::ik::{
-    Budget, FoundBy, Goal, IkOptions, Solution, Solver, Task, solve, solve_distinct,
+    Budget, FoundBy, Goal, IkOptions, Objective, Solution, Solver, Task, solve, solve_distinct,
 };
 use cylindroid::model::Mechanism;
 use cylindroid::{Pose, ReferenceFrame, Vec3, catalogue};
@@ -18,9 +18,12 @@ fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solut
     let state = robot.state(&found.q).unwrap();
     let (mut position, mut orientation) = (0.0_f64, 0.0_f64);
     for goal in goals {
-        let pose = state.pose(goal.end_effector);
-        let error = pose.error_to(goal.target);
-        let seen = |v: Vec3| match goal.task.axes {
+        let Objective::Frame { end_effector, components: task, target } = goal.objective else {
+            panic!("{goal:?}")
+        };
+        let pose = state.pose(end_effector);
+        let error = pose.error_to(target);
+        let seen = |v: Vec3| match task.axes {
             ReferenceFrame::Local => pose.rotation.inverse() * v,
             _ => v,
         };
@@ -28,8 +31,8 @@ fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solut
             let parts = seen(v).to_array().into_iter().zip(keep).filter(|(_, keep)| **keep);
             parts.map(|(x, _)| x * x).sum::<f64>().sqrt()
         };
-        position = position.max(kept(error.linear, &goal.task.components[..3]));
-        orientation = orientation.max(kept(error.angular, &goal.task.components[3..]));
+        position = position.max(kept(error.linear, &task.components[..3]));
+        orientation = orientation.max(kept(error.angular, &task.components[3..]));
     }
     assert!((position - found.position_error).abs() < 1e-12);
     assert!((orientation - found.orientation_error).abs() < 1e-12);
@@ -99,7 +102,7 @@ fn parts_of_poses() {
     for task in [Task::POSITION, Task::ORIENTATION, Task::POINTING] {
         for _ in 0..50 {
             let target = panda.state(&random.q(&panda)).unwrap().pose(panda.tool());
-            let goals = [Goal { task, ..Goal::pose(panda.tool(), target) }];
+            let goals = [Goal::frame(panda.tool(), task, target)];
             let found = solve(&panda, &goals, &options).unwrap();
             assert!(found.success, "{task:?}");
             checked(&panda, &goals, &options, &found);
@@ -146,7 +149,7 @@ base = { xyz = [0.0, 1.0, 0.0] }
         let state = panda.state(&random.q(&panda)).unwrap();
         let goals = ["link4", "hand_tcp"].map(|name| {
             let frame = panda.frame(name).unwrap();
-            Goal { task: Task::POSITION, ..Goal::pose(frame, state.pose(frame)) }
+            Goal::frame(frame, Task::POSITION, state.pose(frame))
         });
         let found = solve(&panda, &goals, &options).unwrap();
         checked(&panda, &goals, &options, &found);
@@ -161,7 +164,7 @@ fn out_of_reach_ends_with_the_nearest_pose() {
     let panda = catalogue::load("panda").unwrap();
     let mut target = panda.state(panda.home()).unwrap().pose(panda.tool());
     target.translation = Vec3::new(1.4, 0.5, 0.6);
-    let goals = [Goal { task: Task::POSITION, ..Goal::pose(panda.tool(), target) }];
+    let goals = [Goal::frame(panda.tool(), Task::POSITION, target)];
     let options = IkOptions::default();
     let found = solve(&panda, &goals, &options).unwrap();
     checked(&panda, &goals, &options, &found);
@@ -281,7 +284,7 @@ limits = { lower = -13.0, upper = 13.0 }
     for (robot, answers) in [(hinge, 1), (screw, 4)] {
         let hand = robot.frame("hand").unwrap();
         let target = robot.state(&[0.5]).unwrap().pose(hand);
-        let goals = [Goal { task: Task::ORIENTATION, ..Goal::pose(hand, target) }];
+        let goals = [Goal::frame(hand, Task::ORIENTATION, target)];
         let found = solve_distinct(&robot, &goals, &IkOptions::default(), 4).unwrap();
         assert_eq!(found.len(), answers, "{}: {found:?}", robot.name());
         found.iter().for_each(|one| checked(&robot, &goals, &IkOptions::default(), one));
@@ -355,9 +358,10 @@ fn bad_requests_are_named() {
         "initial guess",
     );
     let none = Task { components: [false; 6], ..Task::POSE };
-    refused(&[Goal { task: none, ..goal }], &options, "components");
+    refused(&[Goal::frame(panda.tool(), none, Pose::IDENTITY)], &options, "components");
     let mut solver = Solver::new(&panda, &[goal], &options).unwrap();
-    let error = solver.solve(&[Goal { task: Task::POSITION, ..goal }]).unwrap_err().to_string();
+    let position = Goal::frame(panda.tool(), Task::POSITION, Pose::IDENTITY);
+    let error = solver.solve(&[position]).unwrap_err().to_string();
     assert!(error.contains("task"), "{error}");
     let error = solver.solve(&[goal, goal]).unwrap_err().to_string();
     assert!(error.contains("goals"), "{error}");
@@ -404,7 +408,7 @@ fn limits_that_overflow_are_no_success() {
     assert!(refused.contains("lower is 1e308, out of range"), "{refused}");
     let at = Pose::from_translation(Vec3::new(0.9, 0.3, 0.3));
     for task in [Task::POSITION, Task::POSE] {
-        let goal = Goal { task, ..Goal::pose(robot.tool(), at) };
+        let goal = Goal::frame(robot.tool(), task, at);
         let found = solve(&robot, &[goal], &IkOptions::default()).unwrap();
         assert!(!found.success && found.q.iter().all(|x| x.is_finite()), "{found:?}");
     }

@@ -178,10 +178,9 @@ fn weights_decide_between_goals() {
         limits = { lower = -5.0, upper = 5.0 }
         "#,
     );
-    let at = |x: f64, weight: f64| Goal {
-        task: Task::POSITION,
-        weight,
-        ..Goal::pose(robot.tool(), Pose::from_translation(Vec3::X * x))
+    let at = |x: f64, weight: f64| {
+        let target = Pose::from_translation(Vec3::X * x);
+        Goal::frame(robot.tool(), Task::POSITION, target).with_weight(weight)
     };
     let options = IkOptions::default();
     let found = solve(&robot, &[at(0.0, 1.0), at(1.0, 3.0)], &options).unwrap();

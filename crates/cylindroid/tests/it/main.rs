@@ -13,6 +13,8 @@ mod closure;
 mod graph;
 mod hyperbolic;
 mod ik;
+mod ik_goals;
+mod ik_half_spaces;
 mod ik_misses;
 mod ik_wide_limits;
 mod inverse;

@@ -24,6 +24,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::job::{Goal, Job};
 use self::report::{Deviation, Result, Way};
+pub(crate) use self::tasks::load_tasks;
 use crate::args::MoveArgs;
 use crate::commands::shared::{Style, answer};
 use crate::plot;

@@ -69,11 +69,11 @@ pub fn find_reachable_configuration(
         initial_guess: Some(q.to_vec()),
         fixed: (0..mechanism.n()).filter(|c| !free.contains(c)).collect(),
         nearest: true,
-        seed: 0,
         budget: Budget { iterations: ITERATIONS_PER_RESTART * max_restarts.max(1), time: None },
         length: Some(options.length),
+        ..IkOptions::default()
     };
-    let goal = Goal { end_effector: options.end_effector, target, task: options.task, weight: 1.0 };
+    let goal = Goal::frame(options.end_effector, options.task, target);
     let found = solve(mechanism, &[goal], &ik)?;
     Ok(found.success.then_some(Reconfiguration { q: found.q, restarts: found.restarts }))
 }

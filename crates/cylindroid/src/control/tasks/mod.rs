@@ -5,6 +5,7 @@
 //! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
 //! (the levels, solved with `solver/hierarchy.rs`) and `simulation`.
 
+mod goals;
 mod gradient;
 mod levels;
 mod motions;
@@ -16,6 +17,7 @@ mod stack;
 mod task_servo;
 
 pub use crate::task::HalfSpace;
+pub use goals::goals_of;
 pub use objective::{CustomTask, TaskObjective};
 pub use options::{CollisionAvoidance, MotionTask, StoppedBy, TaskReport, TaskServoOptions};
 pub use simulation::TaskMotionResult;

@@ -52,7 +52,8 @@ impl TaskServo {
     pub(super) fn load_distances(&mut self) -> Result<()> {
         for i in 0..self.options.half_spaces.len() {
             let half_space = &self.options.half_spaces[i];
-            let room = half_space.load(&self.state, &mut self.jacobian, &mut self.gradient);
+            half_space.gradient_into(&self.state, &mut self.jacobian, &mut self.gradient);
+            let room = half_space.room(&self.state);
             self.load_distance(i, room);
         }
         let first = self.options.half_spaces.len();

@@ -26,6 +26,8 @@ mod task_reports;
 mod tasks;
 mod twist;
 
+pub(crate) use tasks::two_armed;
+
 pub(crate) use cylindroid::control::{
     JointDefaults, JointMove, JointSample, JointState, KinematicBounds, LimitKind, MotionResult,
     PoseTolerance, SecondaryNullSpace, SecondaryTask, ServoGains, SpeedLimit, Stall, Status,

@@ -12,7 +12,7 @@ use cylindroid::spatial::Mat3;
 use super::*;
 
 /// A torso with two arms of seven joints and a head, with masses.
-pub(super) fn two_armed() -> Mechanism {
+pub(crate) fn two_armed() -> Mechanism {
     let mut builder = Mechanism::builder("two-armed");
     let inertial = |mass: f64| Inertial {
         mass,

@@ -258,7 +258,7 @@ impl Entry {
 }
 
 /// The tasks and the half-spaces of a file.
-pub(super) fn load(
+pub(crate) fn load(
     path: &Path,
     start: &State,
     usual: &MotionTask,
@@ -271,7 +271,7 @@ pub(super) fn load(
     let at = |span: Range<usize>, message: String| error(path, &text, span, message);
     let file: File = toml::from_str(&text)
         .map_err(|error| at(error.span().unwrap_or(0..0), error.message().to_owned()))?;
-    if file.task.is_empty() {
+    if file.task.is_empty() && file.half_space.is_empty() && file.boxes.is_empty() {
         return Err(at(0..0, "there is no [[task]]".to_owned()).into());
     }
     let one = |entry: &Spanned<Entry>| {

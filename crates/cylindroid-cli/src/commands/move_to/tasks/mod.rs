@@ -10,6 +10,7 @@ use std::process::ExitCode;
 
 use cylindroid::control::Status;
 
+pub(crate) use self::file::load as load_tasks;
 use self::job::TaskJob;
 use self::report::Report;
 use crate::args::MoveArgs;
