@@ -16,12 +16,13 @@ Otherwise, a numerical solver starts at --q (clamped to the limits) and then at 
 configurations, until one reaches the target. Every solution is verified by forward kinematics, \
 and the same seed gives the same solution. If no solution is found, the closest configuration is \
 printed with the reason: the target is farther away than the arm is long (which proves that there \
-is none), bodies are too close in every solution found, a solution exists outside the position \
-limits, or none of these.
+is none), bodies are too close in every solution found, a solution exists outside half-spaces \
+or outside the position limits, or none of these.
 
-With --task FRAME=X,Y,Z several frames are brought to their targets at once; --tasks reads a file \
-of goals, the one of `move`. With --avoid or --obstacle links keep a distance from each other and \
-from obstacles.
+With --task FRAME=X,Y,Z several frames are brought to their targets at once; --tasks reads \
+further goals from a file: frames seen from others, the centre of mass, gaze, half-spaces that are \
+not left, a posture. With --avoid or --obstacle links keep a distance from each other and from \
+obstacles.
 
 Exit code 0 if the target is reached, 1 if not, 2 on an error.";
 
@@ -30,12 +31,14 @@ Examples:
   cylindroid ik panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
   cylindroid ik ur5e --to 0.3,0.4,0.5 --rpy 3.1416,0,0 --all 8
   cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest
+  cylindroid ik panda --tasks docs/goals.toml
   cylindroid ik docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
 
-A file of tasks has [[task]] tables of type \"frame\", \"relative_frame\", \"center_of_mass\" or \
-\"gaze\", which a solution reaches all, with a weight where not all can be reached; one \"posture\", \
-to which the solution is the closest one; and tables [[half_space]] and [[box]], see `move --help`. \
-Gains, levels, velocities and tolerances of tasks do not count here.
+A file of tasks is one of `move`, see `move --help`. A solution reaches all of its tasks of type \
+frame, relative_frame, center_of_mass and gaze, lies inside every [[half_space]] (frame, point, \
+normal, tool) and [[box]] (frame, center, size, rpy, tool), and is the closest one to its posture. \
+Weights count where not all tasks can be reached; gains, levels, velocities and tolerances do not \
+count.
 
 An obstacle is NAME=SHAPE@X,Y,Z or NAME=SHAPE@X,Y,Z,ROLL,PITCH,YAW [m, rad], see `distance --help`.";
 
@@ -92,7 +95,7 @@ pub(crate) struct IkArgs {
     #[command(flatten)]
     pub(crate) target: TargetArgs,
 
-    /// File of goals, half-spaces and a posture, see below
+    /// File of further goals, half-spaces and a posture, see below
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) tasks: Option<PathBuf>,
 

@@ -191,7 +191,8 @@ fn print(
     let result = match (&report.out_of_reach, report.success, found.len()) {
         (_, true, 1) => "reached".to_owned(),
         (_, true, several) => {
-            format!("reached by {several} configurations, the closest to --q first")
+            let from = if report.posture.is_some() { "the posture" } else { "--q" };
+            format!("reached by {several} configurations, the closest to {from} first")
         }
         (Some(reach), ..) => format!(
             "out of reach: the target is {} m from the first joint, the arm {} m long from there; \
@@ -211,7 +212,11 @@ fn print(
     };
     let frames = match report.goals.as_slice() {
         [] => report.frame.unwrap_or_default().to_owned(),
-        several => several.iter().map(GoalJson::name).collect::<Vec<_>>().join(", "),
+        several => {
+            let mut names: Vec<&str> = several.iter().map(GoalJson::name).collect();
+            names.dedup();
+            names.join(", ")
+        }
     };
     let [position_error, orientation_error] =
         errors(task, report.position_error, report.orientation_error);

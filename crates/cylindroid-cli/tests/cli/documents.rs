@@ -55,6 +55,7 @@ fn examples_run_as_they_stand() {
     fs::copy(GRASP, docs.join("grasp.toml")).unwrap();
     fs::copy(CELL, docs.join("cell.toml")).unwrap();
     fs::copy(TASKS, docs.join("tasks.toml")).unwrap();
+    fs::copy(GOALS, docs.join("goals.toml")).unwrap();
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let home = ["0"; 21].join(",");
     fs::write(folder.path().join("configurations.csv"), format!("{home}\n{home}\n")).unwrap();

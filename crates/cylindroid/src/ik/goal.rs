@@ -202,6 +202,14 @@ impl Goal {
     }
 }
 
+/// The target of a frame alone.
+pub(super) fn target_of(goals: &[Goal]) -> Option<Pose> {
+    match goals {
+        [Goal { objective: Objective::Frame { target, .. }, .. }] => Some(*target),
+        _ => None,
+    }
+}
+
 /// Returns an error for no goals, a closed chain, or a goal that is none for the mechanism.
 pub(super) fn check_all(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
     if goals.is_empty() {

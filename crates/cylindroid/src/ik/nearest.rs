@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use super::closed_form::ClosedForm;
 use super::convergence::is_reached;
-use super::goal::{Goal, Objective};
+use super::goal::{Goal, target_of};
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::error::Result;
@@ -57,14 +57,6 @@ impl Sample {
     fn distance(&self, other: &Self) -> f64 {
         let squares = self.angles.iter().zip(&other.angles).map(|(a, b)| (a - b).powi(2));
         (squares.sum::<f64>() + (self.value - other.value).powi(2)).sqrt()
-    }
-}
-
-/// The target of the frame whose closed form is in use.
-pub(super) fn target_of(goals: &[Goal]) -> Option<Pose> {
-    match goals {
-        [Goal { objective: Objective::Frame { target, .. }, .. }] => Some(*target),
-        _ => None,
     }
 }
 
@@ -137,6 +129,9 @@ impl Solver {
         let own = self.preferred[locked];
         let mut samples: Vec<Sample> = Vec::new();
         let mut q = self.start.clone();
+        for (&c, fixed) in self.problem.coordinates.iter().zip(&self.problem.fixed) {
+            q[c] = if *fixed { q[c] } else { self.preferred[c] };
+        }
         let mut closest = self.first_restart(&mut q, solutions)?;
         q.copy_from_slice(&self.start);
         let (mut best, mut calls) = (closest * closest, 0);
