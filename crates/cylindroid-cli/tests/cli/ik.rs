@@ -138,7 +138,7 @@ fn files_of_goals_are_checked() {
     assert_eq!(report["reason"]["half_spaces"][0], "half-space of hand_tcp");
     assert!(refused(&["ik", "panda", "--tasks", &wall]).contains("neither a frame"));
     let relative = "[[task]]\ntype = 'relative_frame'\nframe = 'hand_tcp'\n\
-                    reference = 'link4'\nxyz = [0.1, 0.0, 0.5]\ncomponents = 'z'";
+                    reference = 'link4'\nxyz = [0.0, 0.0, 0.1]\ncomponents = 'z'";
     let report = json(&["ik", "panda", "--tasks", &file(&folder, relative)], 0);
     assert_eq!(report["goals"][0]["reference"], "link4");
     let center = "[[task]]\ntype = 'center_of_mass'\nxyz = [0, 0, 0.4]";
