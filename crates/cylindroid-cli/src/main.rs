@@ -11,6 +11,7 @@ mod number_file;
 mod obstacle;
 mod output;
 mod plot;
+mod task_trajectory;
 mod trajectory;
 mod values;
 mod viewer;

@@ -6,6 +6,7 @@ mod fine;
 mod labels;
 pub(crate) mod screws;
 mod skeleton;
+pub(crate) mod tasks;
 
 use std::ops::Range;
 use std::path::Path;
@@ -134,9 +135,9 @@ fn titled<'a>(
 }
 
 /// At most about `POINTS` rows, the last among them.
-fn thinned(rows: &[Row]) -> Vec<&Row> {
+fn thinned<R>(rows: &[R]) -> Vec<&R> {
     let stride = rows.len().div_ceil(POINTS).max(1);
-    let mut kept: Vec<&Row> = rows.iter().step_by(stride).collect();
+    let mut kept: Vec<&R> = rows.iter().step_by(stride).collect();
     if !rows.len().saturating_sub(1).is_multiple_of(stride) {
         kept.extend(rows.last());
     }

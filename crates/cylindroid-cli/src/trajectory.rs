@@ -94,18 +94,13 @@ impl Trajectory {
 
     /// Writes all samples.
     pub(crate) fn write(&self, path: &Path, format: Format) -> Result<()> {
-        let written = File::create(path).and_then(|file| {
-            let mut file = BufWriter::new(file);
-            match format {
-                Format::Csv => self.write_csv(&mut file)?,
-                Format::Json => serde_json::to_writer(&mut file, self)?,
-            }
-            file.flush()
-        });
-        written.map_err(|error| cannot_write(path, &error))
+        save(path, |file| match format {
+            Format::Csv => self.write_csv(file),
+            Format::Json => Ok(serde_json::to_writer(file, self)?),
+        })
     }
 
-    fn write_csv(&self, file: &mut impl Write) -> io::Result<()> {
+    fn write_csv(&self, file: &mut dyn Write) -> io::Result<()> {
         let mut csv = csv::Writer::from_writer(file);
         let mut header = vec!["time".to_owned()];
         header.extend(self.joint_names.iter().map(|name| format!("q.{name}")));
@@ -127,6 +122,19 @@ impl Trajectory {
         }
         csv.flush()
     }
+}
+
+/// Writes a file.
+pub(crate) fn save(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<()> {
+    let written = File::create(path).and_then(|file| {
+        let mut file = BufWriter::new(file);
+        write(&mut file)?;
+        file.flush()
+    });
+    written.map_err(|error| cannot_write(path, &error))
 }
 
 /// The error of a file that cannot be written.

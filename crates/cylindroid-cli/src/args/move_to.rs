@@ -94,11 +94,13 @@ pub(crate) struct MoveArgs {
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_hyphen_values = true)]
     pub(crate) time_limit: f64,
 
-    /// Write the motion: time, q, joint velocities, pose, errors, singular value ratio of every step
+    /// Write the motion: time, q, joint velocities, pose, errors, singular value ratio of every step;
+    /// with several tasks the poses, errors and scales of all, and the nearest distance
     #[arg(long, value_name = "FILE.csv|FILE.json")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Draw joints, errors and singular value ratio over time
+    /// Draw joints, errors and singular value ratio over time; with several tasks their realised
+    /// velocities and the nearest distance
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
 }

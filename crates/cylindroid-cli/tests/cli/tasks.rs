@@ -144,6 +144,64 @@ fn obstacles_are_avoided() {
 }
 
 #[test]
+fn files_hold_every_step_of_all_tasks() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (csv, way, svg) = (file("way.csv"), file("way.json"), file("way.svg"));
+    let command = ["move", CELL, "--to", "0.4,0.25,0.3", "--tasks", TASKS];
+    let ball = ["--obstacle", "ball=sphere:0.08@0.4,0.25,0.3"];
+    let all = [&command[..], &ball, &["--out", &csv, "--plot", &svg]].concat();
+    let report = json(&all, 1);
+
+    let mut reader = csv::Reader::from_path(&csv).unwrap();
+    let header: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(header[..2], ["time", "q.panda_joint1"]);
+    let pose = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+    let rest = ["position_error", "orientation_error", "scale"];
+    let names = |task: &str, of: &[&str]| -> Vec<String> {
+        of.iter().map(|part| format!("{task}.{part}")).collect()
+    };
+    let mut expected = names("hand_tcp", &[&pose[..], &rest].concat());
+    expected.extend(names("hand", &[&pose[..], &rest].concat()));
+    expected.extend(names("elbow", &[&pose[..], &rest].concat()));
+    expected.extend(names("posture", &rest));
+    expected.push("nearest".to_owned());
+    assert_eq!(header[15..], expected);
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len() as u64, report["steps"].as_u64().unwrap() + 1);
+    let value = |row: &csv::StringRecord, name: &str| -> f64 {
+        row[header.iter().position(|h| h == name).unwrap()].parse().unwrap()
+    };
+    let last = rows.last().unwrap();
+    let q = numbers(&report["q"]);
+    assert!((value(last, "q.panda_joint3") - q[2]).abs() < 2e-15, "full precision");
+    let at = position(CELL, &report["q"], "hand_tcp");
+    assert!((value(last, "hand_tcp.y") - at[1]).abs() < 1e-12);
+    for key in ["position_error", "orientation_error", "scale"] {
+        let told = report["tasks"][0][key].as_f64().unwrap();
+        assert!((value(last, &format!("hand_tcp.{key}")) - told).abs() < 1e-15, "{key}");
+    }
+    let nearest = rows.iter().map(|row| value(row, "nearest")).fold(f64::INFINITY, f64::min);
+    assert_eq!(nearest, report["distances"]["nearest"]["distance"].as_f64().unwrap());
+
+    let drawing = fs::read_to_string(&svg).unwrap();
+    assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>"));
+    for words in ["panda_joint7", "elbow [m]", "realised velocity [-]", "distance [m]"] {
+        assert!(drawing.contains(words), "{words}");
+    }
+
+    json(&["move", "panda", "--tasks", TASKS, "--out", &way, "--plot", &svg], 0);
+    let way: Value = serde_json::from_str(&fs::read_to_string(&way).unwrap()).unwrap();
+    assert_eq!(way["tasks"], object!(["hand", "elbow", "posture"]));
+    let first = &way["samples"][0];
+    assert_eq!((&first["nearest"], &first["tasks"][2]["position"]), (&Value::Null, &Value::Null));
+    assert_eq!(numbers(&first["tasks"][0]["quaternion"]).len(), 4);
+    assert!(!fs::read_to_string(&svg).unwrap().contains("distance [m]"));
+    assert!(refused(&[&command[..], &["--out", "way.txt"]].concat()).contains(".csv or .json"));
+    assert!(refused(&[&command[..], &["--plot", "way.png"]].concat()).contains(".svg"));
+}
+
+#[test]
 fn what_has_no_effect_is_refused() {
     for (more, message) in [
         (&["--gap", "0.1"][..], "--gap has no effect without --avoid"),

@@ -87,8 +87,6 @@ fn refuse_foreign(args: &MoveArgs) -> anyhow::Result<()> {
         ("--give-up", !inverse.named.give_up.is_empty()),
         ("--fallback", inverse.fallback.is_some()),
         ("--no-reconfigure", args.no_reconfigure),
-        ("--out", args.out.is_some()),
-        ("--plot", args.plot.is_some()),
     ];
     let parameter = inverse.named.parameters.0.keys().find(|name| **name != "eps");
     let option = foreign.into_iter().find(|(_, given)| *given).map(|(option, _)| option);

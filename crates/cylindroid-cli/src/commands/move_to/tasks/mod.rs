@@ -15,6 +15,9 @@ use self::job::TaskJob;
 use self::report::Report;
 use crate::args::MoveArgs;
 use crate::commands::shared::{Style, answer};
+use crate::plot;
+use crate::task_trajectory::TaskTrajectory;
+use crate::trajectory;
 
 /// True if the arguments ask for several tasks or distances.
 pub(super) fn are_asked_for(args: &MoveArgs) -> bool {
@@ -23,8 +26,26 @@ pub(super) fn are_asked_for(args: &MoveArgs) -> bool {
 
 pub(super) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     let mut job = TaskJob::new(args)?;
+    let format = args.out.as_deref().map(trajectory::format_of).transpose()?;
+    if let Some(path) = &args.plot {
+        plot::check(path)?;
+    }
+    let keep = args.out.is_some() || args.plot.is_some();
+    let mut trajectory = keep.then(|| TaskTrajectory::new(&job.robot, &job.servo)).transpose()?;
     let start = job.start.clone();
-    let result = job.servo.simulate(&start, job.time_limit, |_, _, _| ())?;
+    let result = job.servo.simulate(&start, job.time_limit, |time, q, servo| {
+        if let Some(trajectory) = &mut trajectory {
+            trajectory.push(time, q, servo);
+        }
+    })?;
+    if let Some(trajectory) = &trajectory {
+        if let (Some(path), Some(format)) = (&args.out, format) {
+            trajectory.write(path, format)?;
+        }
+        if let Some(path) = &args.plot {
+            plot::tasks::draw(trajectory, path)?;
+        }
+    }
     Report { job: &job, result: &result }.write(style, out)?;
     Ok(answer(result.status == Status::Reached))
 }
