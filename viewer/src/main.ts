@@ -23,6 +23,7 @@ import { singularPanel } from "./panels/singular";
 import type { Scene, State } from "./protocol";
 import { download, Recorder } from "./recorder";
 import { Restore } from "./restore";
+import { Collisions } from "./robot/collisions";
 import { Robot } from "./robot/robot";
 import { Labels } from "./scene/labels";
 import { Stage } from "./scene/stage";
@@ -82,7 +83,8 @@ function start(): void {
     if (session.scene && session.state) draw(session.scene, session.state);
     stage.invalidate();
   };
-  const distances = new Distances(session, labels, redraw);
+  const collisions = new Collisions(() => stage.invalidate());
+  const distances = new Distances(session, labels, redraw, (shown) => collisions.show(shown));
   const switches = new Switches(overlays, (shown) => robot.showShapes(shown));
   const [pose, singular, screws] = [posePanel(), singularPanel(), screwsPanel()];
   const reports = new Reports(session);
@@ -91,7 +93,7 @@ function start(): void {
   reports.watch("manipulability", capability);
   page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element);
   page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
-  stage.scene.add(robot.group, overlays.group, obstacles.group, distances.group);
+  stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group);
 
   const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
   screws.onToggle(wantScrews);
@@ -136,7 +138,10 @@ function start(): void {
   session.on("scene", (scene) => {
     const bodies = JSON.stringify([scene.links, scene.joints, scene.loops, scene.contacts]);
     if (scene.name !== known.name) fitWanted = true;
-    if (scene.name !== known.name || bodies !== known.bodies) robot.build(scene);
+    if (scene.name !== known.name || bodies !== known.bodies) {
+      robot.build(scene);
+      collisions.build(scene);
+    }
     Object.assign(known, { name: scene.name, bodies });
     target.build(scene);
     bar.build(scene);
@@ -174,6 +179,7 @@ function start(): void {
   };
   const draw = (scene: Scene, state: State): void => {
     robot.place(state);
+    collisions.place(state);
     target.place(state, size);
     if (fitWanted) fitAll(scene);
     overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
@@ -210,7 +216,7 @@ function start(): void {
   stage.onFrame(() => session.takeNewest());
   stage.onFrame(() => labels.place(stage.camera));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, target, robot, distances, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
+  Object.assign(window, { viewer: { session, stage, target, robot, distances, collisions, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
 }
 
 try {

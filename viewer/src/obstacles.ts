@@ -1,7 +1,7 @@
 /** The obstacles in the view: bodies that the handle drags. */
 import { Group, Raycaster, Vector2, type Object3D } from "three";
 import type { Obstacle, Scene, State } from "./protocol";
-import { obstacleBody } from "./robot/meshes";
+import { paintedBody } from "./robot/meshes";
 import { setPose } from "./robot/skeleton";
 import { glass } from "./scene/palette";
 import { discard } from "./scene/shapes";
@@ -60,7 +60,7 @@ export class Obstacles {
     object.name = obstacle.name;
     this.bodies.set(obstacle.name, { object, shape });
     this.group.add(object);
-    obstacleBody(obstacle, glass("c-obstacle", 0.62)).then(
+    paintedBody(obstacle, glass("c-obstacle", 0.62)).then(
       (body) => {
         object.add(body);
         this.stage.invalidate();

@@ -23,7 +23,8 @@ export type Obstacle = { name: string } & (SimpleShape | MeshShape);
 /** Least distance, and the distance below which pairs count (m). */
 export type Avoidance = { gap: number; margin: number };
 export type Anchor = { name: string; kind: "joint" | "child" | "loop" | "contact" | "frame"; position: Vec3 };
-export type SceneLink = { name: string; visuals: Visual[]; anchors: Anchor[] };
+export type CollisionShape = { pose: Pose } & (SimpleShape | MeshShape);
+export type SceneLink = { name: string; visuals: Visual[]; collisions: CollisionShape[]; anchors: Anchor[] };
 export type JointKind =
   | "revolute" | "continuous" | "prismatic" | "helical" | "cylindrical" | "universal" | "spherical"
   | "planar" | "free" | "fixed";

@@ -96,10 +96,14 @@ export class Restore {
     for (const name of shot.overlays ?? []) if (known.has(name)) this.overlays.show(name, true);
   }
 
-  /** Obstacles of a new session come from its server: those of one name are moved. */
+  /** A new session has the obstacles of its server: those of the same name are moved, others removed. */
   private obstacles(shot: Snapshot, scene: Scene): void {
     const { session } = this;
     const there = new Set(scene.obstacles.map(({ name }) => name));
+    const kept = new Set(shot.obstacles?.map(({ name }) => name));
+    for (const { name, kind } of shot.obstacles ? scene.obstacles : []) {
+      if (!kept.has(name) && kind !== "mesh") session.send({ type: "remove_obstacle", name });
+    }
     for (const { name, shape, position, quaternion } of shot.obstacles ?? []) {
       if (there.has(name)) session.send({ type: "move_obstacle", name, position, quaternion });
       else session.send({ type: "add_obstacle", name, shape, position, quaternion });

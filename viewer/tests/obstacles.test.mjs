@@ -30,8 +30,18 @@ test("bodies near each other are listed and connected while the panel is open", 
     const seen = (await state(page)).distances?.near ?? [];
     const shown = await panel.locator("[data-near]").evaluateAll((all) => all.map((row) => Number(row.getAttribute("data-value"))));
     assert.ok(apart(shown, seen.map((near) => near.distance)) < 1e-12);
+    const shapes = () => page.evaluate(() => {
+      /** @type {any} */
+      const { group } = /** @type {any} */ (window).viewer.collisions;
+      return { shown: group.visible, count: group.children.reduce((/** @type {number} */ sum, /** @type {any} */ link) => sum + link.children.length, 0) };
+    });
+    assert.deepEqual(await shapes(), { shown: false, count: 0 });
+    await page.getByRole("switch", { name: "Collision shapes" }).check();
+    await page.waitForTimeout(100);
+    assert.deepEqual(await shapes(), { shown: true, count: (await scene(page)).links.flatMap((link) => link.collisions).length });
     await panel.locator("summary").click();
     await until(page, "state.distances === null");
+    assert.equal((await shapes()).shown, false);
     assert.equal(await lines(page), 0);
   }));
 
@@ -99,6 +109,8 @@ for (const [name, dark, width, height] of /** @type {const} */ ([["light", false
       assert.ok(nearest > 0.01 - 1e-6 && nearest < 0.012, `${nearest}`);
       const cut = await page.evaluate(() => [...document.querySelectorAll(".side *")].filter((element) => element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible" && element.clientWidth > 0).map((element) => `${element.tagName}.${element.className}`));
       assert.deepEqual(cut, [], "text runs out of its place");
+      await page.getByRole("switch", { name: "Collision shapes" }).check();
+      await page.waitForFunction(() => /** @type {any} */ (window).viewer.collisions.group.visible);
       await picture(page, `obstacles-${name}`);
       if (name === "phone") {
         await page.locator('[data-panel="distances"]').scrollIntoViewIfNeeded();

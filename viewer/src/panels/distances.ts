@@ -19,12 +19,22 @@ export class Distances {
   private readonly margin = h("input", { class: "field", type: "number", step: "any", min: 0, value: MARGIN, "aria-label": "Only pairs closer than this (m)", "data-margin": "" });
   private readonly list = h("div", {});
 
-  constructor(private readonly session: Session, private readonly labels: Labels, private readonly redraw: () => void) {
-    this.panel.body.append(h("div", { class: "line" }, h("span", { class: "note" }, "Within [m]"), this.margin), this.list);
+  /** Shows the collision shapes while the panel is open. */
+  private readonly shapes = h("input", { type: "checkbox", class: "switch", role: "switch", "data-collisions": "" });
+
+  constructor(private readonly session: Session, private readonly labels: Labels, private readonly redraw: () => void, showShapes: (shown: boolean) => void) {
+    this.panel.body.append(
+      h("div", { class: "line" }, h("span", { class: "note" }, "Within [m]"), this.margin),
+      h("label", { class: "row" }, this.shapes, h("span", {}, "Collision shapes")),
+      this.list,
+    );
+    const show = (): void => showShapes(this.shapes.checked && this.panel.isOpen());
+    this.shapes.addEventListener("change", show);
     this.margin.addEventListener("change", () => this.ask());
     this.panel.onToggle((open) => {
       this.ask();
       if (!open) this.clear();
+      show();
       this.redraw();
     });
   }

@@ -8,7 +8,7 @@ import { MTLLoader } from "three/addons/loaders/MTLLoader.js";
 import { OBJLoader } from "three/addons/loaders/OBJLoader.js";
 import { STLLoader } from "three/addons/loaders/STLLoader.js";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import type { Colour, MeshShape, Obstacle, SimpleShape, Visual } from "../protocol";
+import type { Colour, MeshShape, SimpleShape, Visual } from "../protocol";
 import { solid } from "../scene/palette";
 import { setPose } from "./skeleton";
 
@@ -17,7 +17,7 @@ const CREASE = 0.6;
 const SMOOTHED = 300_000;
 
 /** The side of the square that stands for a plane (m). */
-const PLANE = 10;
+const PLANE = 4;
 
 type MeshVisual = MeshShape & { rgba: Colour };
 const loaded = new Map<string, Promise<Object3D>>();
@@ -53,11 +53,11 @@ export async function visualBody(visual: Visual): Promise<Object3D> {
   return holder;
 }
 
-/** The body of an obstacle. Rejects with a sentence where its mesh is not to be had. */
-export async function obstacleBody(obstacle: Obstacle, paint: Material): Promise<Object3D> {
-  if (obstacle.kind !== "mesh") return new Mesh(simple(obstacle), paint);
-  const body = await mesh({ ...obstacle, rgba: null });
-  body.scale.multiply({ x: obstacle.scale[0], y: obstacle.scale[1], z: obstacle.scale[2] });
+/** A body of one material. Rejects with a sentence where its mesh is not to be had. */
+export async function paintedBody(shape: SimpleShape | MeshShape, paint: Material): Promise<Object3D> {
+  if (shape.kind !== "mesh") return new Mesh(simple(shape), paint);
+  const body = await mesh({ ...shape, rgba: null });
+  body.scale.multiply({ x: shape.scale[0], y: shape.scale[1], z: shape.scale[2] });
   body.traverse((part) => {
     if (part instanceof Mesh) part.material = paint;
   });

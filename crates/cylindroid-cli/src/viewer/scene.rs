@@ -59,6 +59,7 @@ struct AvoidanceJson {
 struct LinkJson<'a> {
     name: &'a str,
     visuals: Vec<VisualJson<'a>>,
+    collisions: Vec<CollisionJson<'a>>,
     anchors: Vec<AnchorJson<'a>>,
 }
 
@@ -68,6 +69,13 @@ struct VisualJson<'a> {
     shape: ShapeJson<'a>,
     pose: PoseJson,
     rgba: Option<[f64; 4]>,
+}
+
+#[derive(Debug, Serialize)]
+struct CollisionJson<'a> {
+    #[serde(flatten)]
+    shape: ShapeJson<'a>,
+    pose: PoseJson,
 }
 
 #[derive(Debug, Serialize)]
@@ -316,7 +324,12 @@ fn links(session: &Session) -> Vec<LinkJson<'_>> {
     let mut all: Vec<LinkJson<'_>> = mechanism
         .links()
         .iter()
-        .map(|l| LinkJson { name: &l.name, visuals: visuals(session, l), anchors: Vec::new() })
+        .map(|l| LinkJson {
+            name: &l.name,
+            visuals: visuals(session, l),
+            collisions: collisions(session, l),
+            anchors: Vec::new(),
+        })
         .collect();
     let mut add = |link: usize, name, kind, pose: Pose| {
         all[link].anchors.push(AnchorJson { name, kind, position: pose.translation.to_array() });
@@ -345,6 +358,14 @@ fn visuals<'a>(session: &'a Session, link: &'a Link) -> Vec<VisualJson<'a>> {
         Some(VisualJson { shape: shape(session, &v.geometry)?, pose, rgba })
     };
     link.visuals.iter().filter_map(visual).collect()
+}
+
+fn collisions<'a>(session: &'a Session, link: &'a Link) -> Vec<CollisionJson<'a>> {
+    let all = link.collisions.iter();
+    all.filter_map(|c| {
+        Some(CollisionJson { shape: shape(session, &c.geometry)?, pose: c.link_from_shape.into() })
+    })
+    .collect()
 }
 
 fn obstacles(session: &Session) -> Vec<ObstacleJson<'_>> {
