@@ -42,9 +42,12 @@ export class Collisions {
   /** A mesh that is not to be had stays away: the panel lists its distances none the less. */
   private make(): void {
     this.made = true;
+    const paint = glass("c-collision", 0.35);
+    // Just before the shapes of the model, which are often the same.
+    [paint.polygonOffset, paint.polygonOffsetFactor, paint.polygonOffsetUnits] = [true, -2, -2];
     this.scene?.links.forEach((link, i) => {
       for (const shape of link.collisions) {
-        paintedBody(shape, glass("c-collision", 0.35)).then(
+        paintedBody(shape, paint).then(
           (body) => {
             const holder = new Group();
             setPose(holder, shape.pose);

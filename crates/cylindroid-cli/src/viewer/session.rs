@@ -2,11 +2,12 @@
 //!
 //! Independent of sockets and real time: messages change it, and steps move it.
 
+mod collisions;
+
 use std::sync::Arc;
 
 use cylindroid::closure::frame_twists;
-use cylindroid::collision::CollisionModel;
-use cylindroid::control::{CollisionAvoidance, LimitKind, Status, Target};
+use cylindroid::control::{LimitKind, Status, Target};
 use cylindroid::ik::Task;
 use cylindroid::model::FrameId;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
@@ -15,12 +16,11 @@ use serde_json::Value;
 
 use super::assets::Folders;
 use super::avoidance::{Avoidance, GAP, LastStep, MARGIN};
-use super::bodies::{Bodies, DistancesJson};
+use super::bodies::Bodies;
 use super::inverse_parameters::Chosen;
 use super::messages::{Complaint, NullSpace, TargetPose};
 use super::names::Overlay;
 use super::start::Start;
-use crate::obstacle::ObstacleArg;
 
 /// Servo steps per second of its clock.
 pub(super) const STEPS: u32 = 120;
@@ -165,25 +165,6 @@ impl Session {
             (Ok(servo), None) => servo.active_limits().collect(),
             _ => Vec::new(),
         }
-    }
-
-    /// Least distance and margin (m), if collisions are avoided.
-    pub(super) fn avoided(&self) -> Option<(f64, f64)> {
-        self.avoidance.as_ref().map(|(distances, _)| *distances)
-    }
-
-    pub(super) fn obstacles(&self) -> &[ObstacleArg] {
-        self.bodies.obstacles()
-    }
-
-    /// Finds the near pairs of the state, if they are asked for.
-    pub(super) fn find_near(&mut self) -> Result<()> {
-        self.bodies.find_near(&self.state)
-    }
-
-    /// The near pairs that were found, if they are asked for.
-    pub(super) fn distances(&self) -> Option<DistancesJson<'_>> {
-        self.bodies.distances()
     }
 
     /// Speed of the self-motion relative to the joint velocity limits.
@@ -364,56 +345,6 @@ impl Session {
         self.options = options;
         self.self_motion = None;
         self.avoid(self.avoided())
-    }
-
-    /// Avoids collisions with this least distance and margin (m), or does not.
-    pub(super) fn avoid(&mut self, distances: Option<(f64, f64)>) -> Result<()> {
-        self.avoidance = match distances {
-            None => None,
-            Some(distances @ (gap, margin)) => {
-                CollisionAvoidance::check_distances(gap, margin)?;
-                let model = self.bodies.model(&self.start)?.clone();
-                let (mechanism, options, target) = (&self.mechanism, &self.options, self.target);
-                let servo = Avoidance::new(mechanism, options, target, model, distances);
-                Some((distances, servo))
-            }
-        };
-        self.wake();
-        Ok(())
-    }
-
-    /// Includes pairs closer than `margin` (m) in the states, or none.
-    pub(super) fn show_distances(&mut self, margin: Option<f64>) -> Result<()> {
-        self.bodies.show(&self.start, margin)
-    }
-
-    pub(super) fn add_obstacle(&mut self, obstacle: ObstacleArg) -> Result<()> {
-        self.bodies.add(&self.start, obstacle.clone())?;
-        let ObstacleArg { name, shape, world_from_shape } = obstacle;
-        self.change_avoided(|model| model.add_obstacle(&name, &shape, world_from_shape))
-    }
-
-    pub(super) fn move_obstacle(&mut self, name: &str, pose: Pose) -> Result<()> {
-        self.bodies.move_to(&self.start, name, pose)?;
-        self.change_avoided(|model| model.move_obstacle(name, pose))
-    }
-
-    pub(super) fn remove_obstacle(&mut self, name: &str) -> Result<()> {
-        self.bodies.remove(&self.start, name)?;
-        self.change_avoided(|model| model.remove_obstacle(name))
-    }
-
-    /// Changes the obstacles of the servo, which continues.
-    fn change_avoided(
-        &mut self,
-        change: impl FnOnce(&mut CollisionModel) -> Result<()>,
-    ) -> Result<()> {
-        if let Some((_, Ok(avoidance))) = &mut self.avoidance {
-            avoidance.model_mut().map_or(Ok(()), change)?;
-            (self.last, self.trouble) = (None, None);
-            self.is_resting = false;
-        }
-        Ok(())
     }
 
     pub(super) fn turn(&mut self, desired: &NullSpace) -> std::result::Result<(), Complaint> {
