@@ -26,6 +26,7 @@
 mod acceptance;
 mod analytic;
 mod avoidance;
+mod branches;
 mod closed_form;
 mod convergence;
 mod damped_step;

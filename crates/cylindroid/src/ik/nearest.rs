@@ -1,12 +1,12 @@
 //! The closest solution: along the self-motion of every solution, and for arms with one redundant
 //! joint over all branches of its closed form.
 //!
-//! Method   one restart from the initial guess; then the locked joint of the closed form is sampled
-//!          outwards from its initial value, until its own displacement exceeds the distance of the
-//!          best solution. Solutions that are closer than their neighbours on the same branch are
-//!          the start of a descent along the self-motion, in the order of their distance, as long as
-//!          the branch can come closer than the best: the distance changes by no more than the
-//!          configuration.
+//! Method   one restart from the preferred configuration; then the locked joint of the closed form
+//!          is sampled outwards from its preferred value, until its own displacement exceeds the
+//!          distance of the best solution. Solutions that are closer than their neighbours on the
+//!          same branch, and points between ends of branches (`branches.rs`), are the start of a
+//!          descent along the self-motion, in the order of their distance, as long as it can come
+//!          closer than the best: the distance changes by no more than the configuration.
 //! Valid    branches and gaps shorter than a sampling step may be missed
 //! Why so   the samples cover all branches for the price of a few random restarts, which reach some
 //!          branches rarely
@@ -14,6 +14,7 @@
 
 use std::f64::consts::PI;
 
+use super::branches::{Place, STEP, Sample, Samples, index_of};
 use super::closed_form::ClosedForm;
 use super::convergence::is_reached;
 use super::goal::{Goal, target_of};
@@ -23,42 +24,10 @@ use crate::error::Result;
 use crate::scalar::clamp;
 use crate::spatial::Pose;
 
-/// Sampling step of the locked joint [rad].
-const STEP: f64 = 0.1;
-/// Solutions of neighbouring samples whose coordinates differ by less are on one branch [rad].
-const SAME_BRANCH: f64 = 0.6;
-/// Subtracted from lower bounds: a branch may bend between its samples [rad].
-const MARGIN: f64 = 0.3;
 /// Solutions outside the limits by less are clamped to them and corrected [rad].
 const NEARLY_WITHIN: f64 = 0.3;
 /// Largest number of descents.
 const MAX_DESCENTS: usize = 40;
-
-/// A solution for one value of the locked joint.
-#[derive(Debug, Clone, Copy)]
-struct Sample {
-    /// Its place on the grid of values.
-    index: i32,
-    value: f64,
-    angles: [f64; 6],
-    /// Squared distance from the initial guess.
-    far: f64,
-    /// Displacement that clamped it to the limits: it is then no solution, but may be near one.
-    excluded: f64,
-}
-
-impl Sample {
-    /// Largest difference of a coordinate.
-    fn difference(&self, other: &Self) -> f64 {
-        let apart = |m: f64, (a, b): (&f64, &f64)| m.max((a - b).abs());
-        self.angles.iter().zip(&other.angles).fold((self.value - other.value).abs(), apart)
-    }
-
-    fn distance(&self, other: &Self) -> f64 {
-        let squares = self.angles.iter().zip(&other.angles).map(|(a, b)| (a - b).powi(2));
-        (squares.sum::<f64>() + (self.value - other.value).powi(2)).sqrt()
-    }
-}
 
 impl Solver {
     /// If the closest solution is requested: moves along the self-motion towards the initial guess.
@@ -127,7 +96,7 @@ impl Solver {
         let Some((locked, range)) = formulas.range_about(&self.preferred) else { return Ok(0) };
         let places = formulas.analytic.coordinates();
         let own = self.preferred[locked];
-        let mut samples: Vec<Sample> = Vec::new();
+        let mut samples = Samples::default();
         let mut q = self.start.clone();
         for (&c, fixed) in self.problem.coordinates.iter().zip(&self.problem.fixed) {
             q[c] = if *fixed { q[c] } else { self.preferred[c] };
@@ -138,7 +107,7 @@ impl Solver {
         // Every sample is a solution.
         let is_accepted = self.avoidance.is_none() && self.problem.half_spaces.is_empty();
         for k in 0.. {
-            let index = if k % 2 == 0 { -(k / 2) } else { (k + 1) / 2 };
+            let index = index_of(k);
             let next = STEP * f64::from((k + 1) / 2);
             if calls >= most
                 || next * next > best
@@ -149,6 +118,7 @@ impl Solver {
             // The ends of the range are samples as well.
             let value = own + STEP * f64::from(index);
             if value <= range[0] - STEP || value >= range[1] + STEP {
+                samples.end_group();
                 continue;
             }
             let value = clamp(value, range[0], range[1]);
@@ -163,7 +133,7 @@ impl Solver {
             };
             let found = formulas.analytic.solve_with(target, &q, |angles, most| {
                 if most < NEARLY_WITHIN {
-                    samples.push(sample(angles, most));
+                    samples.all.push(sample(angles, most));
                 }
             })?;
             for found in found.iter() {
@@ -171,13 +141,16 @@ impl Solver {
                 if is_accepted {
                     best = best.min(sample.far);
                 }
-                samples.push(sample);
+                samples.all.push(sample);
             }
+            samples.end_group();
         }
-        let mut minima: Vec<(f64, Sample)> =
-            samples.iter().filter_map(|s| Some((lower_bound(s, &samples)?, *s))).collect();
-        minima.sort_by(|a, b| a.1.far.total_cmp(&b.1.far));
-        for (bound, sample) in minima.into_iter().take(MAX_DESCENTS) {
+        let preferred = places.map(|c| self.preferred[c]);
+        if is_accepted {
+            closest = best.sqrt();
+        }
+        let candidates = samples.places((own, &preferred), closest);
+        for Place { bound, sample } in candidates.into_iter().take(MAX_DESCENTS) {
             if bound >= closest {
                 continue;
             }
@@ -187,7 +160,7 @@ impl Solver {
                 q[c] = angle;
             }
             if sample.excluded > 0.0 || !self.problem.half_spaces.is_empty() {
-                // On a branch that the limits cut short, or outside of half-spaces.
+                // Beside a branch, or outside of half-spaces.
                 let (errors, _) = self.problem.run(&mut q, &self.options, 12);
                 if !is_reached(errors, &self.options) {
                     continue;
@@ -200,30 +173,6 @@ impl Solver {
         }
         Ok(calls)
     }
-}
-
-/// A lower bound of the distances on the branch between the neighbours of a sample; `None` if a
-/// neighbour is closer.
-fn lower_bound(sample: &Sample, samples: &[Sample]) -> Option<f64> {
-    let mut longest = 0.0_f64;
-    for side in [-1, 1] {
-        let near = samples.iter().filter(|s| s.index == sample.index + side);
-        let near = near.map(|s| (s.difference(sample), s));
-        match near.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((apart, other)) if apart < SAME_BRANCH => {
-                let closer = match sample.excluded > 0.0 {
-                    true => other.excluded < sample.excluded,
-                    false => other.excluded == 0.0 && other.far < sample.far,
-                };
-                if closer {
-                    return None;
-                }
-                longest = longest.max(other.distance(sample));
-            }
-            _ => longest = longest.max(SAME_BRANCH),
-        }
-    }
-    Some(sample.far.sqrt() - longest - MARGIN)
 }
 
 #[cfg(test)]

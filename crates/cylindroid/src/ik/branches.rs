@@ -1,0 +1,179 @@
+//! Samples of the self-motion of an arm with one redundant joint, and the places from which its
+//! branches may come closer to the preferred configuration.
+//!
+//! Formula  of the segment between two ends of branches A and B the point closest to the preferred
+//!          configuration p: A + t (B - A), t = (p - A) (B - A) / |B - A|^2
+//! Shapes   a solution: the value of the locked joint and the six angles of the closed form
+//! Units    rad
+//! Valid    branches shorter than a sampling step may be missed if both of their ends are folds
+//! Why so   near a singularity two joints swing by a large angle while the locked joint hardly moves:
+//!          no sample of it lies on the swing, which is nearly straight, and often comes closest
+//! Checked  src/ik/nearest.rs (against 1000 random restarts)
+
+use std::ops::Range;
+
+/// Sampling step of the locked joint [rad].
+pub(super) const STEP: f64 = 0.1;
+/// Solutions of neighbouring samples whose coordinates differ by less are on one branch [rad].
+const SAME_BRANCH: f64 = 0.6;
+/// Subtracted from lower bounds: a branch may bend between its samples [rad].
+const MARGIN: f64 = 0.3;
+/// The same for segments between ends of branches [rad].
+const SEGMENT_MARGIN: f64 = 0.1;
+
+/// A solution for one value of the locked joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    /// Its place on the grid of values.
+    pub(super) index: i32,
+    pub(super) value: f64,
+    pub(super) angles: [f64; 6],
+    /// Squared distance from the preferred configuration.
+    pub(super) far: f64,
+    /// Displacement that clamped it to the limits: it is then no solution, but may be near one.
+    pub(super) excluded: f64,
+}
+
+impl Sample {
+    /// Largest difference of a coordinate.
+    fn difference(&self, other: &Self) -> f64 {
+        let apart = |m: f64, (a, b): (&f64, &f64)| m.max((a - b).abs());
+        self.angles.iter().zip(&other.angles).fold((self.value - other.value).abs(), apart)
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        let squares = self.angles.iter().zip(&other.angles).map(|(a, b)| (a - b).powi(2));
+        (squares.sum::<f64>() + (self.value - other.value).powi(2)).sqrt()
+    }
+
+    /// The point at the share `t` of the way to another one, no solution.
+    fn towards(&self, other: &Self, t: f64) -> Self {
+        let mix = |a: f64, b: f64| a + t * (b - a);
+        Self {
+            value: mix(self.value, other.value),
+            angles: std::array::from_fn(|i| mix(self.angles[i], other.angles[i])),
+            excluded: f64::MIN_POSITIVE,
+            ..*self
+        }
+    }
+
+    fn squared_distance_from(&self, (value, angles): (f64, &[f64; 6])) -> f64 {
+        let squares = self.angles.iter().zip(angles).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>() + (self.value - value).powi(2)
+    }
+}
+
+/// A place from which a descent may lead to the closest solution.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// Lower bound of the distances that it can lead to.
+    pub(super) bound: f64,
+    pub(super) sample: Sample,
+}
+
+/// The samples by values of the locked joint: 0, 1, -1, 2, -2, ... steps from the preferred one.
+#[derive(Debug, Default)]
+pub(super) struct Samples {
+    pub(super) all: Vec<Sample>,
+    groups: Vec<Range<usize>>,
+}
+
+/// The value that is sampled as number k, in steps.
+pub(super) const fn index_of(k: i32) -> i32 {
+    if k % 2 == 0 { -(k / 2) } else { (k + 1) / 2 }
+}
+
+impl Samples {
+    /// Ends the samples of the next value.
+    pub(super) fn end_group(&mut self) {
+        let first = self.groups.last().map_or(0, |group| group.end);
+        self.groups.push(first..self.all.len());
+    }
+
+    /// The samples of a value.
+    fn group(&self, index: i32) -> &[Sample] {
+        let k = if index > 0 { 2 * index - 1 } else { -2 * index };
+        let group = usize::try_from(k).ok().and_then(|k| self.groups.get(k));
+        group.map_or(&[], |group| &self.all[group.clone()])
+    }
+
+    /// The sample of a neighbouring value on the same branch.
+    fn neighbour(&self, sample: &Sample, side: i32) -> Option<&Sample> {
+        let near = self.group(sample.index + side).iter().map(|s| (s.difference(sample), s));
+        let near = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        near.filter(|(apart, _)| *apart < SAME_BRANCH).map(|(_, other)| other)
+    }
+
+    /// Samples that are closer than their neighbours on the same branch, and points between ends of
+    /// branches, the closest first.
+    pub(super) fn places(&self, preferred: (f64, &[f64; 6]), closest: f64) -> Vec<Place> {
+        let mut places = Vec::new();
+        let mut ends: Vec<(i32, Sample, Option<Sample>)> = Vec::new();
+        for sample in &self.all {
+            let sides = [-1, 1].map(|side| self.neighbour(sample, side));
+            for (i, side) in [(0, -1), (1, 1)] {
+                if sides[i].is_none() && sample.excluded == 0.0 {
+                    // The gap between two values has the number of the larger one.
+                    let gap = sample.index + i32::max(side, 0);
+                    ends.push((gap, *sample, sides[1 - i].copied()));
+                }
+            }
+            if let Some(bound) = lower_bound(sample, sides).filter(|bound| *bound < closest) {
+                places.push(Place { bound, sample: *sample });
+            }
+        }
+        ends.sort_by_key(|end| end.0);
+        for gap in ends.chunk_by(|a, b| a.0 == b.0) {
+            for (i, (_, a, behind)) in gap.iter().enumerate() {
+                let segment = |b: &Sample| segment(a, b, preferred, closest);
+                places.extend(gap[i + 1..].iter().filter_map(|(_, b, _)| segment(b)));
+                if let (1, Some(behind)) = (gap.len(), behind) {
+                    places.extend(segment(&behind.towards(a, 2.0)));
+                }
+            }
+        }
+        places.sort_by(|a, b| a.sample.far.total_cmp(&b.sample.far));
+        places
+    }
+}
+
+/// The point of a segment that is closest to the preferred configuration, if it is inside of the
+/// segment and closer than `closest`.
+fn segment(a: &Sample, b: &Sample, preferred: (f64, &[f64; 6]), closest: f64) -> Option<Place> {
+    let (value, angles) = preferred;
+    let (mut along, mut squared) = ((value - a.value) * (b.value - a.value), 0.0);
+    squared += (b.value - a.value).powi(2);
+    for i in 0..6 {
+        let way = b.angles[i] - a.angles[i];
+        along += (angles[i] - a.angles[i]) * way;
+        squared += way * way;
+    }
+    if !(along > 0.0 && along < squared) {
+        return None;
+    }
+    let point = a.towards(b, along / squared);
+    let far = point.squared_distance_from(preferred);
+    let bound = far.sqrt() - SEGMENT_MARGIN;
+    (bound < closest).then_some(Place { bound, sample: Sample { far, ..point } })
+}
+
+/// A lower bound of the distances on the branch between the neighbours of a sample; `None` if a
+/// neighbour is closer.
+fn lower_bound(sample: &Sample, sides: [Option<&Sample>; 2]) -> Option<f64> {
+    let mut longest = 0.0_f64;
+    for side in sides {
+        let Some(other) = side else {
+            longest = longest.max(SAME_BRANCH);
+            continue;
+        };
+        let closer = match sample.excluded > 0.0 {
+            true => other.excluded < sample.excluded,
+            false => other.excluded == 0.0 && other.far < sample.far,
+        };
+        if closer {
+            return None;
+        }
+        longest = longest.max(other.distance(sample));
+    }
+    Some(sample.far.sqrt() - longest - MARGIN)
+}
