@@ -143,9 +143,9 @@ fn segment(a: &Sample, b: &Sample, preferred: (f64, &[f64; 6]), closest: f64) ->
     let (value, angles) = preferred;
     let (mut along, mut squared) = ((value - a.value) * (b.value - a.value), 0.0);
     squared += (b.value - a.value).powi(2);
-    for i in 0..6 {
-        let way = b.angles[i] - a.angles[i];
-        along += (angles[i] - a.angles[i]) * way;
+    for ((from, to), angle) in a.angles.iter().zip(&b.angles).zip(angles) {
+        let way = to - from;
+        along += (angle - from) * way;
         squared += way * way;
     }
     if !(along > 0.0 && along < squared) {
