@@ -17,6 +17,18 @@ use crate::spatial::{Pose, Vec3};
 /// The gradient of the distance of a pair over all coordinates, into `row` (n entries).
 pub(super) fn gradient_into(state: &State, near: &NearPair, row: &mut [f64]) {
     row.fill(0.0);
+    for_each_column(state, near, |c, velocity, normal| row[c] += normal.dot(velocity));
+}
+
+/// True for the coordinates that move the bodies of a pair relative to one another.
+pub(super) fn moving_into(state: &State, near: &NearPair, moving: &mut [bool]) {
+    moving.fill(false);
+    for_each_column(state, near, |c, _, _| moving[c] = true);
+}
+
+/// Calls `f` with each coordinate that moves one of the bodies and not the other, the velocity of the
+/// closest point, and the normal by which the distance grows.
+fn for_each_column(state: &State, near: &NearPair, mut f: impl FnMut(usize, Vec3, Vec3)) {
     let mechanism = state.mechanism();
     let tip = |link: Option<usize>| {
         link.map(|l| Tip {
@@ -28,10 +40,8 @@ pub(super) fn gradient_into(state: &State, near: &NearPair, row: &mut [f64]) {
     };
     let (a, b) = (tip(near.link_a), tip(near.link_b));
     let shared = a.as_ref().zip(b.as_ref()).map_or(0, |(a, b)| a.common_slot(b));
-    let mut add = |tip: Option<Tip<'_>>, point: Vec3, normal: Vec3| {
-        let Some(tip) = tip else { return };
-        tip.for_each_column_above(shared, point, |_, c, t| row[c] += normal.dot(t.linear));
-    };
-    add(a, near.point_a, -near.normal);
-    add(b, near.point_b, near.normal);
+    for (tip, point, normal) in [(a, near.point_a, -near.normal), (b, near.point_b, near.normal)] {
+        let Some(tip) = tip else { continue };
+        tip.for_each_column_above(shared, point, |_, c, t| f(c, t.linear, normal));
+    }
 }

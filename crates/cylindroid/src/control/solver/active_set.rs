@@ -23,6 +23,8 @@ mod keep;
 mod level;
 mod minimise;
 
+use std::ops::Range;
+
 use super::inequalities::Inequalities;
 use crate::linalg::{Matrix, dot, norm};
 
@@ -41,6 +43,9 @@ const ROUNDING: f64 = 1e-13;
 /// Rates of rows along a direction below this share of the largest possible one are roundings of
 /// zero [-].
 const STILL: f64 = 1e-13;
+
+/// Descents towards a bound below this share of the largest possible one are roundings of zero [-].
+const PULL: f64 = 1e-9;
 
 /// Values of rows beyond their bounds by less than this, relative to one plus the bound, are within
 /// them [-].
@@ -161,6 +166,24 @@ impl ActiveSet {
         let all = self.working.iter().zip(&self.multipliers);
         all.filter(|(w, l)| **l * self.inequalities.length(w.row) > self.least)
             .map(|(w, _)| (w.row, w.sign))
+    }
+
+    /// True if these rows of a level, whose residual is loaded, would move beyond an inequality.
+    pub(in crate::control) fn pulls(
+        &mut self,
+        level: &Level,
+        rows: Range<usize>,
+        (row, sign): (usize, f64),
+    ) -> bool {
+        self.inequalities.write(row, sign, &mut self.normal);
+        let left = &level.residual[rows.clone()];
+        let (mut pull, mut size) = (0.0, 0.0);
+        for (j, n) in self.normal.iter().enumerate() {
+            let x = dot(&level.rows.column(j)[rows.clone()], left);
+            pull += n * x;
+            size += x * x;
+        }
+        pull > PULL * size.sqrt() * self.inequalities.length(row)
     }
 
     /// Goes to the feasible point nearest to `guess` and forgets all levels; false if there is

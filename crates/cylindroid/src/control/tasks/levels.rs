@@ -3,6 +3,8 @@
 //! Shapes   of a task: rows x n; of a level: the sum of the rows of its tasks x n
 //! Checked  tests/it/servo/tasks.rs
 
+use std::ops::Range;
+
 use super::options::StoppedBy;
 use crate::control::solver::active_set::Level;
 use crate::control::solver::hierarchy::ScaledLevel;
@@ -13,6 +15,8 @@ use crate::linalg::Matrix;
 pub(super) struct Stack {
     pub(super) members: Vec<Member>,
     pub(super) level: ScaledLevel,
+    /// The rows of its tasks whose directions are changed; the others are zero.
+    pub(super) turned: Level,
     /// Share of the level that higher levels or singular directions leave out.
     pub(super) left_out: f64,
 }
@@ -20,11 +24,9 @@ pub(super) struct Stack {
 /// A task in its level.
 #[derive(Debug, Clone)]
 pub(super) struct Member {
-    /// Its index, and its first row in the level.
+    /// Its index, and its rows in the level.
     pub(super) task: usize,
-    pub(super) first: usize,
-    /// Its rows alone, where its direction is changed.
-    pub(super) own: Level,
+    pub(super) rows: Range<usize>,
     pub(super) direction_changed: bool,
     /// Norm of its scaled error.
     pub(super) error: f64,
@@ -33,16 +35,8 @@ pub(super) struct Member {
 }
 
 impl Member {
-    pub(super) fn new(task: usize, first: usize, own: Level) -> Self {
-        Self {
-            task,
-            first,
-            own,
-            direction_changed: false,
-            error: 0.0,
-            scale: 1.0,
-            stopped_by: None,
-        }
+    pub(super) fn new(task: usize, rows: Range<usize>) -> Self {
+        Self { task, rows, direction_changed: false, error: 0.0, scale: 1.0, stopped_by: None }
     }
 }
 

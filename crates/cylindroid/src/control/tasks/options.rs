@@ -96,7 +96,8 @@ pub struct TaskServoOptions {
     pub dt: f64,
     /// Characteristic length that scales the linear rows (m).
     pub length: f64,
-    /// A weight for each coordinate (a large weight keeps it still); empty for none.
+    /// A weight for each coordinate (a large weight keeps it still) [-, or 1/m^2 of a length: 1/L^2
+    /// weighs a slider as an angle]; empty for 1.
     pub joint_weights: Vec<f64>,
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
     pub acceleration: f64,

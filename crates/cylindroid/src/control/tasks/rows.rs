@@ -54,6 +54,9 @@ impl TaskServo {
             let half_space = &self.options.half_spaces[i];
             half_space.gradient_into(&self.state, &mut self.jacobian, &mut self.gradient);
             let room = half_space.room(&self.state);
+            for (j, moving) in self.moving.iter_mut().enumerate() {
+                *moving = self.jacobian.column(j).iter().any(|x| *x != 0.0);
+            }
             self.load_distance(i, room);
         }
         let first = self.options.half_spaces.len();
@@ -71,13 +74,14 @@ impl TaskServo {
             };
             let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
             collisions.model.gradient_into(&self.state, near, &mut self.gradient);
+            collisions.model.moving_into(&self.state, near, &mut self.moving);
             let room = near.distance - gap;
             self.load_distance(first + place, room);
         }
         Ok(())
     }
 
-    /// The row of a distance whose gradient is loaded.
+    /// The row of a distance whose gradient and moving coordinates are loaded.
     fn load_distance(&mut self, place: usize, room: f64) {
         let (motions, gradient) = (&self.motions, &self.gradient);
         for (j, entry) in self.entries.iter_mut().enumerate() {
@@ -105,8 +109,9 @@ impl TaskServo {
     fn second_order(&self) -> f64 {
         let reach = self.state.mechanism().reach();
         let coordinates = self.state.mechanism().coordinates().iter();
-        let moving = coordinates.zip(&self.rates).zip(&self.gradient).filter(|(_, g)| **g != 0.0);
-        let turn = |((c, rate), _): ((&Coordinate, &f64), &f64)| {
+        // Also those along the distance: what they turn bends it.
+        let moving = coordinates.zip(&self.rates).zip(&self.moving).filter(|(_, moving)| **moving);
+        let turn = |((c, rate), _): ((&Coordinate, &f64), &bool)| {
             if c.kind.is_length() { rate.abs() / reach } else { rate.abs() }
         };
         let angle = self.options.dt * moving.map(turn).sum::<f64>();

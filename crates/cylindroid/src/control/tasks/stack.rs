@@ -1,8 +1,9 @@
 //! The stack of levels: each task is scaled along its direction; where no scale is feasible, its
 //! direction is changed, on what the others of its level leave.
 //!
-//! Formula  `solver/hierarchy.rs`; direction changed: min |A y - b|^2 + d |y|^2, d = k |error|, k and
-//!          its least value from `solver/saturation.rs`
+//! Formula  `solver/hierarchy.rs`; directions changed, of all such tasks of a level at once:
+//!          min |A y - b|^2 + d |y|^2, d = k |error| of the task with the largest error, k and its
+//!          least value from `solver/saturation.rs`
 //! Valid    a level that higher levels fix in part cannot be scaled as a whole: its direction is
 //!          changed where a limit stops the rest
 //! Checked  tests/it/servo/tasks.rs
@@ -11,7 +12,7 @@ use super::levels::{Member, Stack};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::solver::active_set::FEASIBLE;
+use crate::control::solver::active_set::{FEASIBLE, Level};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::saturation::{CURVATURE, LEAST_DAMPING, MIN_SCALE, STRAIGHT};
@@ -102,7 +103,7 @@ impl TaskServo {
     fn solve_levels(&mut self) -> bool {
         let length = self.options.length;
         for stack in &mut self.stacks {
-            let Stack { members, level, left_out } = stack;
+            let Stack { members, level, turned, left_out } = stack;
             let whole = &mut level.whole;
             for member in &mut *members {
                 let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
@@ -111,11 +112,11 @@ impl TaskServo {
                 for r in 0..rows.error.len() {
                     let scale = root * if rows.is_length[r] { 1.0 / length } else { 1.0 };
                     error += (scale * rows.error[r]).powi(2);
-                    whole.target[member.first + r] =
+                    whole.target[member.rows.start + r] =
                         scale * (task.gain * rows.error[r] + rows.feed_forward[r]);
                     for j in 0..whole.rows.cols() {
                         let entry = self.motions.entry(|i| rows.jacobian[(r, i)], j);
-                        whole.rows[(member.first + r, j)] = scale * entry;
+                        whole.rows[(member.rows.start + r, j)] = scale * entry;
                     }
                 }
                 member.error = error.sqrt();
@@ -143,24 +144,40 @@ impl TaskServo {
                     return false;
                 }
             }
+            let errors = members.iter().filter(|m| m.direction_changed).map(|m| m.error);
+            let Some(error) = errors.reduce(f64::max) else { continue };
+            // The others share by their weights what is left: none of them comes first.
+            load_turned(turned, members, &level.whole);
+            let damping = (CURVATURE * error).max(LEAST_DAMPING);
+            self.stops.clear();
+            self.set.solve_damped(turned, damping, STRAIGHT, |row| self.stops.push(row));
+            turned.left(self.set.point());
             for member in members.iter_mut().filter(|m| m.direction_changed) {
-                let (own, whole) = (&mut member.own, &level.whole);
-                let rows = member.first..member.first + own.target.len();
-                own.target.copy_from_slice(&whole.target[rows.clone()]);
-                for j in 0..whole.rows.cols() {
-                    let column = &whole.rows.column(j)[rows.clone()];
-                    own.rows.column_mut(j).copy_from_slice(column);
+                let (mut stop, rows) = (None, member.rows.clone());
+                for &(row, sign) in &self.stops {
+                    if self.set.pulls(turned, rows.clone(), (row, sign)) {
+                        note(&mut stop, cause((row, sign), causes));
+                    }
                 }
-                let damping = (CURVATURE * member.error).max(LEAST_DAMPING);
-                let mut stop = None;
-                self.set.solve_damped(own, damping, STRAIGHT, |row| {
-                    note(&mut stop, cause(row, causes));
-                });
                 // Inequalities across the target stop only this solution.
                 member.stopped_by = stop.or(member.stopped_by);
             }
         }
         true
+    }
+}
+
+/// The rows and targets of the tasks whose directions are changed, into `turned`.
+fn load_turned(turned: &mut Level, members: &[Member], whole: &Level) {
+    turned.rows.as_mut_slice().fill(0.0);
+    turned.target.fill(0.0);
+    for member in members.iter().filter(|m| m.direction_changed) {
+        let rows = member.rows.clone();
+        turned.target[rows.clone()].copy_from_slice(&whole.target[rows.clone()]);
+        for j in 0..whole.rows.cols() {
+            let column = &whole.rows.column(j)[rows.clone()];
+            turned.rows.column_mut(j)[rows.clone()].copy_from_slice(column);
+        }
     }
 }
 

@@ -94,12 +94,16 @@ pub struct TaskServo {
     pub(super) near: Vec<NearPair>,
     /// Of a distance, over the coordinates and over the unknowns; the Jacobian of a half-space.
     pub(super) gradient: Vec<f64>,
+    /// The coordinates that move what a distance measures.
+    pub(super) moving: Vec<bool>,
     pub(super) entries: Vec<f64>,
     pub(super) jacobian: Matrix,
     pub(super) last: Vec<f64>,
     /// Bounds of the distances before they give way; unknowns at rest.
     pub(super) strict: Vec<f64>,
     pub(super) rest: Vec<f64>,
+    /// Inequalities that stop the tasks of a level, with the signs of their bounds.
+    pub(super) stops: Vec<(usize, f64)>,
     pub(super) desired: Vec<f64>,
     /// The inequality that stops postures and desired velocities.
     pub(super) lowest_stopped_by: Option<StoppedBy>,
@@ -163,12 +167,13 @@ impl TaskServo {
                 for (i, task) in tasks.iter().enumerate() {
                     let m = task.objective.rows();
                     if task.level == level && m > 0 {
-                        members.push(Member::new(i, first, Level::new(m, u)));
+                        members.push(Member::new(i, first..first + m));
                         first += m;
                     }
                 }
-                let starts = members.iter().map(|m| m.first).collect();
-                Stack { members, level: ScaledLevel::new(starts, first, u), left_out: 0.0 }
+                let starts = members.iter().map(|m| m.rows.start).collect();
+                let level = ScaledLevel::new(starts, first, u);
+                Stack { members, level, turned: Level::new(first, u), left_out: 0.0 }
             })
             .collect();
         let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };
@@ -197,11 +202,13 @@ impl TaskServo {
             bounds: vec![VelocityBounds::NONE; v],
             near: Vec::with_capacity(capacity + MOST_PAIRS),
             gradient: vec![0.0; n],
+            moving: vec![false; n],
             entries: vec![0.0; u],
             jacobian: Matrix::zeros(6, n),
             last: vec![0.0; u],
             strict: vec![0.0; distances],
             rest: vec![0.0; u],
+            stops: Vec::with_capacity(u),
             desired: vec![0.0; u],
             lowest_stopped_by: None,
             rates: vec![0.0; v],
@@ -302,7 +309,7 @@ impl TaskServo {
         self.set.reset();
         for stack in &mut self.stacks {
             stack.level.reset();
-            stack.members.iter_mut().for_each(|member| member.own.reset());
+            stack.turned.reset();
         }
     }
 

@@ -21,6 +21,7 @@ mod secondary;
 mod shared;
 mod stall;
 mod steps;
+mod task_invariance;
 mod task_kinds;
 mod task_reports;
 mod tasks;
