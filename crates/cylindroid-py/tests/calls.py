@@ -229,7 +229,7 @@ def calls():
          {"q": PANDA.home, "target": NEAR, "secondary": np.zeros(7), "feed_forward": TWIST}),
         ("Servo.step_twist", servo().step_twist, {"q": PANDA.home, "twist": TWIST}),
         ("Servo.step_actuated", servo().step_actuated,
-         {"actuated": PANDA.home, "target": NEAR, "feed_forward": TWIST}),
+         {"actuated": PANDA.home, "target": NEAR, "feed_forward": TWIST, "sensors": {}}),
         ("Servo.start_from", servo().start_from, {"q": PANDA.home}),
         ("Servo.advance", servo().advance, {"q": PANDA.home}),
         ("Servo.simulate", servo().simulate,

@@ -409,6 +409,46 @@ def test_parallel_robots_are_driven_from_their_actuated_joints():
         servo.step_actuated(measured + [0.9, -0.9, 0.9, -0.9, 0.9, -0.9], target)
 
 
+def test_passive_joints_that_are_measured_too_count():
+    five_bar = cy.load("five-bar")
+    q = five_bar.home.copy()
+    servo = cy.Servo(five_bar, dt=0.002, acceleration=5.0)
+    servo.start_from(q)
+    actuated = [i for i, name in enumerate(five_bar.joint_names) if name in five_bar.actuated]
+    passive = [name for name in five_bar.joint_names if name not in five_bar.actuated]
+    target = five_bar.fk(q, servo.frame)
+    servo.step_actuated(q[actuated], target)
+    alone = servo.configuration
+    place = five_bar.joint_names.index(passive[0])
+    servo.step_actuated(q[actuated], target, sensors={passive[0]: q[place] + 1e-3})
+    assert 1e-5 < np.abs(servo.configuration - alone).max() < 1e-3
+    with pytest.raises(cy.UnknownNameError, match=passive[0]):
+        servo.step_actuated(q[actuated], target, sensors={passive[0] + "x": 0.0})
+    with pytest.raises(cy.InvalidOptionError, match="sensors"):
+        servo.step_actuated(q[actuated], target, sensors={five_bar.joint_names[actuated[0]]: 0.0})
+
+
+def test_a_servo_that_lags_keeps_limits():
+    panda = cy.load("panda")
+    target = panda.fk(panda.home)
+    target[:3, 3] += [0.0, 0.2, -0.6]
+    beyond = {}
+    for known in (0.0, 0.06):
+        servo = cy.Servo(panda, dt=0.002, acceleration=10, time_constant=known)
+        q, v, worst = panda.home, np.zeros(7), 0.0
+        for _ in range(2000):
+            u = servo.step(q, target)
+            before, v = v, u + np.exp(-0.002 / 0.06) * (v - u)
+            q = q + 0.002 * u + 0.06 * (before - v)
+            worst = max(worst, (q - panda.upper).max(), (panda.lower - q).max())
+        beyond[known] = worst
+    assert beyond[0.0] > 0.01 and beyond[0.06] < 1e-9, beyond
+    with pytest.raises(cy.InvalidOptionError, match="delay"):
+        cy.Servo(panda, delay=-1.0)
+    many = cy.TaskServo(panda, [cy.FrameTask("panda_hand", target)], delay=0.02, noise=1e-4)
+    many.step(panda.home)
+
+
 def test_encoder_noise_does_not_stop_a_closed_chain():
     five_bar = cy.load("five-bar")
     servo = cy.Servo(five_bar, task="position", dt=0.002, acceleration=5.0, tolerance_position=1e-3)

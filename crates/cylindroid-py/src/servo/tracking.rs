@@ -2,11 +2,14 @@
 //!
 //! Checked  tests/test_servo.py
 
+use std::collections::BTreeMap;
+
+use cylindroid::Error;
 use pyo3::prelude::*;
 
 use super::{PyServo, moving_target};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::Result;
+use crate::error::{Result, argument};
 
 #[pymethods]
 impl PyServo {
@@ -22,6 +25,9 @@ impl PyServo {
     ///     The desired `world_from_tool` (m).
     /// feed_forward : array_like, (6,), optional
     ///     The twist of a moving target, linear first, world axes, at the tool [m/s, rad/s].
+    /// sensors : dict of str to float, optional
+    ///     Positions of passive joints that are measured too, by name [rad or m]; the configuration is
+    ///     the closed one nearest to all measured positions.
     ///
     /// Returns
     /// -------
@@ -49,17 +55,26 @@ impl PyServo {
     /// >>> target = stewart.fk(stewart.home, servo.frame)
     /// >>> bool(abs(servo.step_actuated(legs, target)).max() < 1e-9)
     /// True
-    #[pyo3(signature = (actuated, target, feed_forward = None))]
+    #[pyo3(signature = (actuated, target, feed_forward = None, sensors = None))]
     fn step_actuated<'py>(
         &self,
         py: Python<'py>,
         actuated: Numbers<'py>,
         target: Numbers<'py>,
         feed_forward: Option<Numbers<'py>>,
+        #[pyo3(from_py_with = argument)] sensors: Option<BTreeMap<String, f64>>,
     ) -> Result<Array<'py>> {
         let target = moving_target(&target, feed_forward.as_ref())?;
         let running = &mut *self.lock()?;
-        running.last = Some(running.servo.step_actuated(actuated.vector("actuated")?, target)?);
+        let coordinates = running.servo.mechanism().coordinates();
+        let names = || coordinates.iter().map(|c| c.name.as_str());
+        let sensors = sensors.unwrap_or_default().into_iter().map(|(name, position)| {
+            let place = names().position(|n| n == name);
+            Ok((place.ok_or_else(|| Error::unknown("joint", &name, names()))?, position))
+        });
+        let sensors = sensors.collect::<Result<Vec<_>>>()?;
+        let actuated = actuated.vector("actuated")?;
+        running.last = Some(running.servo.step_measured(actuated, &sensors, target)?);
         Ok(arrays::vector(py, running.servo.joint_velocities()))
     }
 

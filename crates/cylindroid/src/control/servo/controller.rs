@@ -32,6 +32,7 @@ use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
 use super::options::ServoOptions;
 use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
+use super::sensor_fit::SensorFit;
 use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Status, Step, Target};
 use super::task_space::TaskSpace;
@@ -112,6 +113,7 @@ pub struct Servo {
     distance: f64,
     /// Of a robot that is not ideal.
     predictor: Option<Box<Predictor>>,
+    sensor_fit: Option<Box<SensorFit>>,
 }
 
 impl Servo {
@@ -160,10 +162,8 @@ impl Servo {
         } else {
             None
         };
-        let inertia = match options.inertia_weights {
-            true => Some(Box::new(InertiaWeights::new(mechanism)?)),
-            false => None,
-        };
+        let weights = options.inertia_weights.then(|| InertiaWeights::new(mechanism));
+        let inertia = weights.transpose()?.map(Box::new);
         let rates = limits.len();
         // The unknowns: joint velocities, or actuated motions.
         let unknowns = coupled.as_ref().map_or(n, |c| c.actuated_joints());
@@ -217,6 +217,7 @@ impl Servo {
             follower: TargetFollower::new(m),
             distance: 0.0,
             predictor,
+            sensor_fit: None,
             chain,
         };
         servo.generic_rank = if servo.coupled.is_some() {

@@ -16,6 +16,7 @@
 
 use super::limits::JointState;
 use super::loop_motions::LoopMotions;
+use super::sensor_fit::SensorFit;
 use super::task_space::TaskSpace;
 use crate::closure::ActuationMap;
 use crate::control::solver::bounds::VelocityBounds;
@@ -112,6 +113,16 @@ impl Coupled {
     /// The closed configuration nearest to the measured one.
     pub(super) fn q(&self) -> &[f64] {
         self.loops.q()
+    }
+
+    /// Memory for [`Coupled::fit`].
+    pub(super) fn sensor_fit(&self) -> SensorFit {
+        self.loops.sensor_fit()
+    }
+
+    /// Moves the closed configuration to the one nearest to all measured positions.
+    pub(super) fn fit(&mut self, fit: &mut SensorFit) -> Result<()> {
+        self.loops.fit(fit)
     }
 
     /// Closes the loops of a measured configuration, see [`LoopMotions::close_measured`].

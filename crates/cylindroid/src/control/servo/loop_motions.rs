@@ -9,11 +9,12 @@
 //! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs
 
 use super::limits::stopping_velocity;
+use super::sensor_fit::SensorFit;
 use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, assemble};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
-use crate::model::{Limits, Mechanism};
+use crate::model::{Coordinate, Limits, Mechanism};
 use crate::tolerance::{MIN_ACTUATED_SHARE, NEARLY_CLOSED};
 
 /// Steps of Newton's method that close a measured configuration: from loops open by
@@ -122,6 +123,17 @@ impl LoopMotions {
             });
         }
         self.q.copy_from_slice(q);
+        self.close_present(&mut closure_error)?;
+        if !self.is_regular {
+            self.q.copy_from_slice(q);
+            self.partitioning.load(q)?;
+        }
+        Ok(())
+    }
+
+    /// Closes the loops of `q`, which is loaded.
+    fn close_present(&mut self, closure_error: &mut LoopClosureError) -> Result<()> {
+        let length = self.mechanism.reach();
         self.passive_change.fill(0.0);
         self.actuated_change.fill(0.0);
         self.is_regular = self.partitioning.solve(&self.weights);
@@ -136,15 +148,33 @@ impl LoopMotions {
                 self.actuated_change.copy_from_slice(actuated_step);
             }
             passive_step.iter_mut().zip(&*actuated_step).for_each(|(f, d)| *f += d);
-            self.mechanism.integrate_in_place(&mut self.q, &passive_step[..q.len()], 1.0);
-            closure_error = self.partitioning.load(&self.q)?;
+            let n = self.q.len();
+            self.mechanism.integrate_in_place(&mut self.q, &passive_step[..n], 1.0);
+            *closure_error = self.partitioning.load(&self.q)?;
             self.is_regular = self.partitioning.solve(&self.weights);
         }
-        if !self.is_regular {
-            self.q.copy_from_slice(q);
-            self.partitioning.load(q)?;
-        }
         Ok(())
+    }
+
+    /// Memory to fit positions of more coordinates than the actuated ones.
+    pub(super) fn sensor_fit(&self) -> SensorFit {
+        let reach = self.mechanism.reach();
+        let scale = |c: &Coordinate| if c.kind.is_length() { 1.0 / reach } else { 1.0 };
+        let scales = self.mechanism.coordinates().iter().map(scale).collect();
+        SensorFit::new(scales, self.actuated, self.velocities() - self.q.len())
+    }
+
+    /// Moves the closed configuration to the one nearest to all measured positions; away from type II
+    /// singularities.
+    pub(super) fn fit(&mut self, fit: &mut SensorFit) -> Result<()> {
+        if !self.is_regular {
+            return Ok(());
+        }
+        let (partitioning, q) = (&mut self.partitioning, &mut self.q);
+        fit.solve(q, partitioning.motions(), |j, motion| partitioning.motion_into(j, motion));
+        self.mechanism.integrate_in_place(q, &fit.step, 1.0);
+        let mut closure_error = self.partitioning.load(&self.q)?;
+        self.close_present(&mut closure_error)
     }
 
     /// Writes M at the closed configuration. `moves` says whether velocities of the n + e (which it

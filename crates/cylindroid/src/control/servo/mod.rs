@@ -22,6 +22,7 @@ mod plant;
 mod projection;
 mod reference_point;
 mod secondary;
+mod sensor_fit;
 mod stall;
 mod step;
 mod task_space;

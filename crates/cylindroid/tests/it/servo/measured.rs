@@ -3,7 +3,7 @@
 use cylindroid::catalogue;
 use cylindroid::closure::assemble;
 use cylindroid::control::{Status, Task};
-use cylindroid::model::Mechanism;
+use cylindroid::model::{CoordinateKind, Mechanism};
 use cylindroid::{Pose, Servo, ServoOptions, Vec3};
 
 use crate::support::Random;
@@ -122,4 +122,58 @@ fn impossible_measurements_are_named() {
     let error = servo.step_actuated(&[f64::NAN, home[1]], target).unwrap_err();
     assert!(error.to_string().contains("actuated positions"), "{error}");
     servo.step_actuated(&home, target).unwrap();
+}
+
+/// Passive joints that are measured too lower the error of the object; wrong ones are named.
+#[test]
+fn redundant_sensors_lower_the_noise() {
+    for (name, task) in [("five-bar", Task::POSITION), ("stewart", Task::POSE)] {
+        let mechanism = catalogue::load(name).unwrap();
+        let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
+        let target = pose(&mechanism, &q);
+        let scalar = |i: &usize| {
+            let c = &mechanism.coordinates()[*i];
+            !c.actuated && matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length)
+        };
+        let passive: Vec<usize> = (0..mechanism.n()).filter(scalar).collect();
+        assert!(!passive.is_empty(), "{name}");
+        let mut random = Random(8);
+        let mut estimated = |with: bool| {
+            let mut options = options(&mechanism, 5.0);
+            options.task = task;
+            let mut servo = Servo::new(&mechanism, options).unwrap();
+            servo.start_from(&q).unwrap();
+            let mut square = 0.0;
+            for _ in 0..400 {
+                let mut read = |i: usize| q[i] + random.within(-1e-4, 1e-4);
+                let actuated: Vec<f64> = mechanism.actuated().map(&mut read).collect();
+                let sensors: Vec<(usize, f64)> =
+                    passive.iter().filter(|_| with).map(|&i| (i, read(i))).collect();
+                servo.step_measured(&actuated, &sensors, target).unwrap();
+                let here = pose(&mechanism, servo.configuration());
+                let off = here.error_to(target);
+                square += off.linear.dot(off.linear) + off.angular.dot(off.angular);
+            }
+            (square / 400.0).sqrt()
+        };
+        let (alone, both) = (estimated(false), estimated(true));
+        println!("{name}: {alone:.2e} {both:.2e}");
+        assert!(both < 0.9 * alone, "{name}: {both} beside {alone}");
+
+        // Without noise nothing changes.
+        let mut servo = Servo::new(&mechanism, options(&mechanism, 5.0)).unwrap();
+        servo.start_from(&q).unwrap();
+        let actuated: Vec<f64> = mechanism.actuated().map(|i| q[i]).collect();
+        let sensors: Vec<(usize, f64)> = passive.iter().map(|&i| (i, q[i])).collect();
+        servo.step_measured(&actuated, &sensors, target).unwrap();
+        for (a, b) in servo.configuration().iter().zip(&q) {
+            assert!((a - b).abs() < 1e-9, "{name}");
+        }
+        let driven = mechanism.actuated().next().unwrap();
+        for wrong in [driven, mechanism.n()] {
+            let error = servo.step_measured(&actuated, &[(wrong, 0.0)], target).unwrap_err();
+            assert!(error.to_string().contains("sensors"), "{error}");
+        }
+        servo.step_measured(&actuated, &[(passive[0], f64::NAN)], target).unwrap_err();
+    }
 }

@@ -10,6 +10,7 @@
 use super::super::step::{Step, Target};
 use super::Servo;
 use crate::error::{Error, Result};
+use crate::model::CoordinateKind;
 
 impl Servo {
     /// One step from the positions of the actuated coordinates alone, in ascending order of their
@@ -42,6 +43,22 @@ impl Servo {
     /// the last configuration. The servo is unchanged.
     #[doc(alias = "encoders")]
     pub fn step_actuated(&mut self, actuated: &[f64], target: impl Into<Target>) -> Result<Step> {
+        self.step_measured(actuated, &[], target)
+    }
+
+    /// [`Servo::step_actuated`] with redundant sensors: positions of passive coordinates that are
+    /// measured too, by index [rad or m]. The configuration is the closed one nearest to all measured
+    /// positions (least squares, lengths divided by the reach of the mechanism).
+    ///
+    /// # Errors
+    /// As [`Servo::step_actuated`], and for an index that is no angle or length of a passive
+    /// coordinate.
+    pub fn step_measured(
+        &mut self,
+        actuated: &[f64],
+        sensors: &[(usize, f64)],
+        target: impl Into<Target>,
+    ) -> Result<Step> {
         let expected = self.mechanism.actuated().count();
         Error::check_len("actuated positions", expected, actuated.len())?;
         Error::check_finite("actuated positions", actuated)?;
@@ -64,10 +81,45 @@ impl Servo {
             q[i] = *x;
         }
         self.track(true);
-        let done = self.step(&q, target);
+        let done = match self.fit(&mut q, sensors) {
+            Ok(()) => self.step(&q, target),
+            Err(error) => Err(error),
+        };
         self.track(false);
         self.predicted = q;
         done
+    }
+
+    /// Replaces `q` by the closed configuration nearest to its actuated positions and the sensors.
+    fn fit(&mut self, q: &mut [f64], sensors: &[(usize, f64)]) -> Result<()> {
+        if sensors.is_empty() {
+            return Ok(());
+        }
+        let coordinates = self.mechanism.coordinates();
+        for &(i, position) in sensors {
+            Error::check_finite("positions of sensors", &[position])?;
+            let kind = coordinates.get(i).filter(|c| !c.actuated).map(|c| c.kind);
+            if !matches!(kind, Some(CoordinateKind::Angle | CoordinateKind::Length)) {
+                return Err(Error::InvalidOption {
+                    option: "sensors",
+                    value: i.to_string(),
+                    reason: "no angle or length of a passive coordinate has this index".to_owned(),
+                });
+            }
+        }
+        let Some(coupled) = &mut self.coupled else { return Ok(()) };
+        let fit = self.sensor_fit.get_or_insert_with(|| Box::new(coupled.sensor_fit()));
+        fit.measured.fill(f64::NAN);
+        for i in self.mechanism.actuated() {
+            fit.measured[i] = q[i];
+        }
+        for &(i, position) in sensors {
+            fit.measured[i] = position;
+        }
+        coupled.close_measured(q)?;
+        coupled.fit(fit)?;
+        q.copy_from_slice(coupled.q());
+        Ok(())
     }
 
     fn track(&mut self, is_tracked: bool) {
