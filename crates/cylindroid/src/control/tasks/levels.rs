@@ -51,3 +51,20 @@ pub(super) struct TaskRows {
     /// True for rows that are lengths.
     pub(super) is_length: Vec<bool>,
 }
+
+impl TaskRows {
+    /// The rate at which these joint velocities reduce the error, its lengths divided by `length`
+    /// [1/s]; without an error or rows infinite.
+    pub(super) fn progress(&self, rates: &[f64], length: f64) -> f64 {
+        let (mut reduced, mut square) = (0.0, 0.0);
+        for (i, error) in self.error.iter().enumerate() {
+            let unit = if self.is_length[i] { 1.0 / length } else { 1.0 };
+            let scaled = error * unit * unit;
+            let velocity: f64 =
+                (0..self.jacobian.cols()).map(|j| self.jacobian[(i, j)] * rates[j]).sum();
+            reduced += scaled * velocity;
+            square += scaled * error;
+        }
+        if square > 0.0 { reduced / square } else { f64::INFINITY }
+    }
+}

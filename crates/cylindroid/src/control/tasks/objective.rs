@@ -170,6 +170,38 @@ impl TaskObjective {
         }
     }
 
+    /// True if the target is another one than `last`, which it replaces; of custom tasks it is not
+    /// known.
+    pub(super) fn has_moved(&self, last: &mut Vec<f64>) -> bool {
+        let (mut place, mut moved) = (0, false);
+        let mut note = |x: &f64| {
+            match last.get_mut(place) {
+                Some(before) => {
+                    moved |= *before != *x;
+                    *before = *x;
+                }
+                None => last.push(*x),
+            }
+            place += 1;
+        };
+        match self {
+            Self::Frame { target: Target { pose, .. }, .. }
+            | Self::RelativeFrame { target: pose, .. } => {
+                pose.translation.to_array().iter().for_each(&mut note);
+                pose.rotation.matrix().to_rows().as_flattened().iter().for_each(&mut note);
+            }
+            Self::CenterOfMass { target: point, .. } | Self::Gaze { point, .. } => {
+                point.to_array().iter().for_each(&mut note);
+            }
+            Self::Posture { q } => q.iter().for_each(&mut note),
+            Self::JointVelocities { .. }
+            | Self::Manipulability { .. }
+            | Self::LimitAvoidance { .. }
+            | Self::Custom(_) => {}
+        }
+        moved
+    }
+
     /// True for postures, joint velocities and gradients, which are of the lowest level in any case.
     #[must_use]
     pub const fn is_of_lowest_level(&self) -> bool {

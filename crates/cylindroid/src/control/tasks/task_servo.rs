@@ -35,6 +35,9 @@ use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
 use crate::task::HalfSpace;
 
+/// Share of its gain at which the error of a task falls while it follows its target [-].
+const FOLLOWED: f64 = 0.1;
+
 /// A controller of any number of tasks with priorities, inside limits and outside of collisions.
 ///
 /// ```text
@@ -113,6 +116,7 @@ pub struct TaskServo {
     lowest_velocities: Vec<f64>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
+    last_targets: Vec<Vec<f64>>,
     /// Of a robot that is not ideal.
     predictor: Option<Predictor>,
 }
@@ -182,6 +186,10 @@ impl TaskServo {
         let inequalities = Inequalities::new(u, limit_rows == 0, limit_rows + distances);
         let length = options.length;
         let capacity = options.collisions.as_ref().map_or(0, |c| c.model.pairs().len());
+        let mut last_targets = vec![Vec::new(); tasks.len()];
+        for (task, last) in tasks.iter().zip(&mut last_targets) {
+            task.objective.has_moved(last);
+        }
         let report = TaskReport {
             status: Status::Moving,
             position_error: 0.0,
@@ -216,6 +224,7 @@ impl TaskServo {
             lowest_velocities: vec![0.0; n],
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
+            last_targets,
             predictor: Predictor::new(mechanism, options.plant, options.dt),
             tasks,
             options,
@@ -464,6 +473,12 @@ impl TaskServo {
             let scaled = position_error / self.options.length + orientation_error;
             let reached = position_error <= task.tolerance.position
                 && orientation_error <= task.tolerance.orientation;
+            // Towards a target that moves the error may grow although the task is followed.
+            if task.objective.has_moved(&mut self.last_targets[i])
+                && rows.progress(&self.rates, self.options.length) >= FOLLOWED * task.gain
+            {
+                self.detectors[i] = StallDetector::new();
+            }
             let stalled = self.detectors[i].stalled(scaled, braking, self.options.dt);
             let status = match (reached, stalled) {
                 (true, _) => Status::Reached,

@@ -155,3 +155,34 @@ fn a_task_that_limits_stop_does_not_slow_others() {
     let beside = time(vec![near(), hand("left_6_link", Vec3::new(3.0, 0.5, 0.0))]);
     assert!(beside < alone + alone / 4, "{beside} steps instead of {alone}");
 }
+
+/// A target that moves away is no stall while the hand follows it, and one at the edge of reach.
+#[test]
+fn a_target_that_moves_away_is_no_stall() {
+    let robot = catalogue::load("panda").unwrap();
+    let mut q = robot.home().to_vec();
+    let end_effector = robot.tool().into();
+    let start = robot.state(&q).unwrap().pose(robot.tool());
+    let at = |way: f64| TaskObjective::Frame {
+        end_effector,
+        components: Task::POSITION,
+        target: Pose { translation: start.translation + Vec3::X * way, ..start }.into(),
+    };
+    let mut options = TaskServoOptions::new(&robot);
+    (options.dt, options.acceleration) = (4e-3, 10.0);
+    let mut servo =
+        TaskServo::new(&robot, vec![MotionTask::new("hand", at(0.0))], options).unwrap();
+    let mut stalled = None;
+    for step in 0..5000 {
+        let way = 0.05 * 4e-3 * f64::from(step);
+        *servo.objective_mut("hand").unwrap() = at(way);
+        if servo.step(&q).unwrap() == Status::Stalled {
+            stalled = stalled.or(Some(way));
+        }
+        servo.advance(&mut q);
+    }
+    // The hand reaches about 0.5 m of 1 m.
+    let way = stalled.unwrap();
+    assert!(way > 0.4 && way < 0.85, "{way}");
+    assert_eq!(servo.status(), Status::Stalled);
+}
