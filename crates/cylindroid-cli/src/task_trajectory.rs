@@ -8,7 +8,7 @@ use cylindroid::{EndEffector, Mechanism, Result, State};
 use serde::Serialize;
 
 use crate::output;
-use crate::trajectory::{Format, save};
+use crate::trajectory::{Format, joint_columns, save};
 
 /// A trajectory of several tasks.
 #[derive(Debug, Serialize)]
@@ -128,9 +128,7 @@ impl TaskTrajectory {
 
     fn write_csv(&self, file: &mut dyn Write) -> io::Result<()> {
         let mut csv = csv::Writer::from_writer(file);
-        let mut header = vec!["time".to_owned()];
-        header.extend(self.joint_names.iter().map(|name| format!("q.{name}")));
-        header.extend(self.joint_names.iter().map(|name| format!("velocity.{name}")));
+        let mut header = joint_columns(&self.joint_names);
         for (name, frame) in self.tasks.iter().zip(&self.end_effectors) {
             if frame.is_some() {
                 let pose = ["x", "y", "z", "qw", "qx", "qy", "qz"];

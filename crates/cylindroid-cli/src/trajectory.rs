@@ -102,9 +102,7 @@ impl Trajectory {
 
     fn write_csv(&self, file: &mut dyn Write) -> io::Result<()> {
         let mut csv = csv::Writer::from_writer(file);
-        let mut header = vec!["time".to_owned()];
-        header.extend(self.joint_names.iter().map(|name| format!("q.{name}")));
-        header.extend(self.joint_names.iter().map(|name| format!("velocity.{name}")));
+        let mut header = joint_columns(&self.joint_names);
         let rest = ["x", "y", "z", "qw", "qx", "qy", "qz"];
         header.extend(rest.map(str::to_owned));
         let rest = ["position_error", "orientation_error", "singular_ratio"];
@@ -122,6 +120,13 @@ impl Trajectory {
         }
         csv.flush()
     }
+}
+
+/// The names of the first columns: time, positions and velocities of the joints.
+pub(crate) fn joint_columns(joint_names: &[String]) -> Vec<String> {
+    let positions = joint_names.iter().map(|name| format!("q.{name}"));
+    let velocities = joint_names.iter().map(|name| format!("velocity.{name}"));
+    std::iter::once("time".to_owned()).chain(positions).chain(velocities).collect()
 }
 
 /// Writes a file.

@@ -9,6 +9,7 @@
 use std::f64::consts::PI;
 
 use super::convergence::{Errors, is_reached};
+use super::levenberg_marquardt::Problem;
 use super::reason::MissReason;
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
@@ -62,22 +63,9 @@ impl Solver {
         if self.problem.half_spaces.is_empty() {
             return None;
         }
-        self.problem.half_spaces.ignored = true;
-        let mut found = None;
-        for restart in 0..=RESTARTS {
-            let mut next = q.to_vec();
-            if restart > 0 {
-                let mut random = self.options.seed.wrapping_add(restart);
-                self.sample_configuration(&mut next, false, &mut random);
-            }
-            let (errors, _) = self.problem.run(&mut next, &self.options, ITERATIONS_PER_RESTART);
-            if is_reached(errors, &self.options) {
-                found = Some(next);
-                break;
-            }
-        }
-        self.problem.half_spaces.ignored = false;
-        self.problem.evaluate(&found?);
+        let ignore = |problem: &mut Problem, ignored: bool| problem.half_spaces.ignored = ignored;
+        let found = self.solve_relaxed(q, |p| ignore(p, true), |p| ignore(p, false))?;
+        self.problem.evaluate(&found);
         let state = self.problem.state.as_ref()?;
         let names = self.problem.half_spaces.violated(state, self.options.position_tolerance);
         (!names.is_empty()).then_some(names)
@@ -88,24 +76,35 @@ impl Solver {
     fn solve_without_limits(&mut self, q: &[f64]) -> Option<Vec<f64>> {
         let n = self.problem.coordinates.len();
         let limits = (self.problem.lower.clone(), self.problem.upper.clone());
-        let mut found = None;
-        for restart in 0..=RESTARTS {
+        let mut found = self.solve_relaxed(
+            q,
+            |p| (p.lower, p.upper) = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]),
+            |p| (p.lower, p.upper) = limits.clone(),
+        )?;
+        self.turn_towards_limits(&mut found);
+        Some(found)
+    }
+
+    /// A configuration that reaches the goals while the problem is relaxed: from `q`, then from random
+    /// configurations.
+    fn solve_relaxed(
+        &mut self,
+        q: &[f64],
+        relax: impl Fn(&mut Problem),
+        restore: impl Fn(&mut Problem),
+    ) -> Option<Vec<f64>> {
+        (0..=RESTARTS).find_map(|restart| {
             let mut next = q.to_vec();
             if restart > 0 {
                 let mut random = self.options.seed.wrapping_add(restart);
                 self.sample_configuration(&mut next, false, &mut random);
             }
-            self.problem.lower = vec![f64::NEG_INFINITY; n];
-            self.problem.upper = vec![f64::INFINITY; n];
+            relax(&mut self.problem);
             let (errors, _) = self.problem.run(&mut next, &self.options, ITERATIONS_PER_RESTART);
-            (self.problem.lower, self.problem.upper) = limits.clone();
-            if is_reached(errors, &self.options) && next.iter().all(|x| x.is_finite()) {
-                self.turn_towards_limits(&mut next);
-                found = Some(next);
-                break;
-            }
-        }
-        found
+            restore(&mut self.problem);
+            let reached = is_reached(errors, &self.options) && next.iter().all(|x| x.is_finite());
+            reached.then_some(next)
+        })
     }
 
     /// Full turns of joints that permit them, towards the middle of their range.
