@@ -1,6 +1,6 @@
 //! Drives the tool of a robot to a pose and says how it went: the library's shortest way.
 //!
-//! `cargo run --release --example 01_move_to_a_pose -- path/to/robot.urdf`
+//! `cargo run --release -p cylindroid --example 01_move_to_a_pose -- path/to/robot.urdf`
 #![allow(clippy::print_stdout)]
 
 use cylindroid::control::{Target, simulate};

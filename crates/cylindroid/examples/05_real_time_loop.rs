@@ -1,6 +1,6 @@
 //! A hard real-time loop at 1 kHz: real-time scheduling and locked memory where the system permits
 //! them, absolute deadlines, nothing allocated; at the end the worst times, in microseconds.
-//! `cargo run --release --example 05_real_time_loop -- 60` runs it for a minute (ten seconds without a
+//! `cargo run --release -p cylindroid --example 05_real_time_loop -- 60` runs it for a minute (ten seconds without a
 //! number).
 #![allow(clippy::print_stdout)]
 
