@@ -53,8 +53,8 @@ def write(folder, facts, results):
     versions = ", ".join(f"{n} {v}" for n, v in facts["versions"].items())
     lines = [f"""# Simulated robots
 
-`cargo xtask plants` drives robots that MuJoCo simulates, and writes this page and `plants.json`.
-This run: commit {facts['commit']}; {versions}; {facts['targets']} targets in each row.
+`cargo xtask plants --targets {facts['targets']}` drives robots that MuJoCo simulates, and writes this page and
+`plants.json`. This run: commit {facts['commit']}; {versions}; {facts['targets']} targets in each row.
 
 The physics take steps of 1 ms. A drive follows the commanded velocity, or the position to which the
 commands add up, with a lag of {facts['lag'] * 1e3:.0f} ms beside its own stiffness; gravity is compensated. Encoders have

@@ -9,12 +9,12 @@ use cylindroid::closure::assemble;
 use cylindroid::collision::{CollisionModel, CollisionOptions};
 use cylindroid::control::{
     Admittance, AdmittanceGain, CollisionAvoidance, HalfSpace, HybridController, HybridInput,
-    MotionTask, SecondaryTask, ServoGains, SharedController, SharedInput, Task, TaskObjective,
-    TaskProjection, TaskServo, TaskServoOptions,
+    MotionTask, Plant, SecondaryTask, ServoGains, SharedController, SharedInput, Task,
+    TaskObjective, TaskProjection, TaskServo, TaskServoOptions,
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
-use cylindroid::kinematics::{Chain, KinematicsBatch};
+use cylindroid::kinematics::{Chain, EndEffector, KinematicsBatch};
 use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Link, Visual};
 use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::spatial::Mat3;
@@ -135,6 +135,56 @@ fn escapes_allocate_nothing() {
     assert!(changed > 0 && left < 1e-3, "{changed} {left}");
 }
 
+fn frame(end_effector: EndEffector, components: Task, target: Pose) -> TaskObjective {
+    TaskObjective::Frame { end_effector, components, target: target.into() }
+}
+
+/// Behind drives that lag: towards a target and along a twist, of one task and of several, and of a
+/// closed chain with redundant sensors.
+#[test]
+fn robots_that_lag_allocate_nothing() {
+    let plant = Plant { delay: 0.02, time_constant: 0.01, noise: 1e-4 };
+    let panda = catalogue::load("panda").unwrap();
+    let start = panda.state(panda.home()).unwrap().pose(panda.tool());
+    let target = Pose { translation: start.translation + Vec3::new(0.3, 0.8, -0.9), ..start };
+    let options = ServoOptions { plant, ..ServoOptions::new(&panda) };
+    let mut servo = Servo::new(&panda, options).unwrap();
+    let hand = frame(panda.tool().into(), Task::POSE, target);
+    let options = TaskServoOptions { plant, ..TaskServoOptions::new(&panda) };
+    let mut tasks = TaskServo::new(&panda, vec![MotionTask::new("hand", hand)], options).unwrap();
+    let twist = Twist { linear: Vec3::new(0.0, 0.1, 0.1), angular: Vec3::Z * 0.1 };
+    let (mut q, mut p) = (panda.home().to_vec(), panda.home().to_vec());
+    let counted = count(|| {
+        for round in 0..1500 {
+            match round % 3 {
+                0 => servo.step_twist(&q, Some(twist)).unwrap().step,
+                _ => servo.step(&q, target).unwrap(),
+            };
+            servo.advance(&mut q);
+            tasks.step(&p).unwrap();
+            tasks.advance(&mut p);
+        }
+    });
+    assert_eq!(counted, 0);
+
+    let five_bar = catalogue::load("five-bar").unwrap();
+    let options = ServoOptions { plant, acceleration: 5.0, ..ServoOptions::new(&five_bar) };
+    let mut servo = Servo::new(&five_bar, options).unwrap();
+    let q = assemble(&five_bar, five_bar.home(), &[]).unwrap().q;
+    servo.start_from(&q).unwrap();
+    let pose = five_bar.state(&q).unwrap().pose(five_bar.reference());
+    let actuated: Vec<f64> = five_bar.actuated().map(|i| q[i]).collect();
+    let passive = (0..five_bar.n()).find(|&i| !five_bar.coordinates()[i].actuated).unwrap();
+    let sensors = [(passive, q[passive] + 1e-5)];
+    servo.step_measured(&actuated, &sensors, pose).unwrap(); // memory for the sensors
+    let counted = count(|| {
+        for _ in 0..100 {
+            servo.step_measured(&actuated, &sensors, pose).unwrap();
+        }
+    });
+    assert_eq!(counted, 0);
+}
+
 /// Closed chains, with limits that bite, from all joints and from the actuated ones alone.
 #[test]
 fn closed_chains_allocate_nothing() {
@@ -208,11 +258,6 @@ fn many_tasks_allocate_nothing() {
         let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
         let between = Pose::from_translation(pose.translation + Vec3::new(-0.1, 0.0, 0.05));
         model.add_obstacle("ball", &Geometry::Sphere { radius: 0.05 }, between).unwrap();
-        let frame = |of, components, target: Pose| TaskObjective::Frame {
-            end_effector: of,
-            components,
-            target: target.into(),
-        };
         let tasks = vec![
             MotionTask::new("hand", frame(last.into(), Task::POSITION, pose)),
             MotionTask::new("middle", frame(middle.into(), Task::POSE, pose)).at_level(1),
@@ -249,8 +294,7 @@ fn tasks_of_closed_chains_allocate_nothing() {
         let end_effector = defaults.end_effector;
         let pose = mechanism.state(&q).unwrap().pose(end_effector);
         let target = Pose { translation: pose.translation + Vec3::X * 1e-3, ..pose };
-        let objective =
-            TaskObjective::Frame { end_effector, components: defaults.task, target: target.into() };
+        let objective = frame(end_effector, defaults.task, target);
         let posture = TaskObjective::Posture { q: q.clone() };
         let mut options = TaskServoOptions::new(&mechanism);
         options.half_spaces = vec![HalfSpace {

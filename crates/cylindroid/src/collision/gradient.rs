@@ -12,23 +12,32 @@
 
 use super::scene::NearPair;
 use crate::kinematics::{State, Tip};
-use crate::spatial::{Pose, Vec3};
+use crate::spatial::Pose;
 
 /// The gradient of the distance of a pair over all coordinates, into `row` (n entries).
 pub(super) fn gradient_into(state: &State, near: &NearPair, row: &mut [f64]) {
     row.fill(0.0);
-    for_each_column(state, near, |c, velocity, normal| row[c] += normal.dot(velocity));
+    for_each_column(state, near, |c, rate| row[c] += rate);
 }
 
-/// True for the coordinates that move the bodies of a pair relative to one another.
-pub(super) fn moving_into(state: &State, near: &NearPair, moving: &mut [bool]) {
+/// The same, and true for the coordinates that move the bodies relative to one another.
+pub(super) fn gradient_and_moving_into(
+    state: &State,
+    near: &NearPair,
+    row: &mut [f64],
+    moving: &mut [bool],
+) {
+    row.fill(0.0);
     moving.fill(false);
-    for_each_column(state, near, |c, _, _| moving[c] = true);
+    for_each_column(state, near, |c, rate| {
+        row[c] += rate;
+        moving[c] = true;
+    });
 }
 
-/// Calls `f` with each coordinate that moves one of the bodies and not the other, the velocity of the
-/// closest point, and the normal by which the distance grows.
-fn for_each_column(state: &State, near: &NearPair, mut f: impl FnMut(usize, Vec3, Vec3)) {
+/// Calls `f` with each coordinate that moves one of the bodies and not the other, and the rate at which
+/// that body's closest point moves away from the other body.
+fn for_each_column(state: &State, near: &NearPair, mut f: impl FnMut(usize, f64)) {
     let mechanism = state.mechanism();
     let tip = |link: Option<usize>| {
         link.map(|l| Tip {
@@ -42,6 +51,6 @@ fn for_each_column(state: &State, near: &NearPair, mut f: impl FnMut(usize, Vec3
     let shared = a.as_ref().zip(b.as_ref()).map_or(0, |(a, b)| a.common_slot(b));
     for (tip, point, normal) in [(a, near.point_a, -near.normal), (b, near.point_b, near.normal)] {
         let Some(tip) = tip else { continue };
-        tip.for_each_column_above(shared, point, |_, c, t| f(c, t.linear, normal));
+        tip.for_each_column_above(shared, point, |_, c, t| f(c, normal.dot(t.linear)));
     }
 }

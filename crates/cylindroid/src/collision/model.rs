@@ -13,7 +13,7 @@
 
 use super::body::{self, Body};
 use super::convex::{Convex, Core};
-use super::gradient::{gradient_into, moving_into};
+use super::gradient::{gradient_and_moving_into, gradient_into};
 use super::options::CollisionOptions;
 use super::pairs;
 use super::sampling::drop_constant;
@@ -251,9 +251,15 @@ impl CollisionModel {
         gradient_into(state, near, row);
     }
 
-    /// True for the coordinates that move the bodies of a near pair relative to one another.
-    pub(crate) fn moving_into(&self, state: &State, near: &NearPair, moving: &mut [bool]) {
-        moving_into(state, near, moving);
+    /// The same, and true for the coordinates that move the bodies relative to one another.
+    pub(crate) fn gradient_and_moving_into(
+        &self,
+        state: &State,
+        near: &NearPair,
+        row: &mut [f64],
+        moving: &mut [bool],
+    ) {
+        gradient_and_moving_into(state, near, row, moving);
     }
 
     /// The gradient of the distance of a near pair over all coordinates.

@@ -39,58 +39,55 @@ enum Source {
     Gaze { memory: Matrix, world: Matrix },
 }
 
-/// The coordinates that can change the error of a goal, ascending.
-pub(super) fn coordinates_of(mechanism: &Mechanism, goal: &Goal) -> Vec<usize> {
-    match goal.objective {
-        Objective::Frame { end_effector, .. } | Objective::Gaze { end_effector, .. } => {
-            Chain::new(mechanism, end_effector).coordinates().to_vec()
-        }
-        Objective::RelativeFrame { end_effector, reference, .. } => {
-            let of = |end_effector| Chain::new(mechanism, end_effector).coordinates().to_vec();
-            let mut all = [of(end_effector), of(reference)].concat();
-            all.sort_unstable();
-            all.dedup();
-            all
-        }
-        Objective::CenterOfMass { .. } => (0..mechanism.n()).collect(),
-    }
-}
-
 impl GoalRows {
-    /// `coordinates` are those of the problem, `length` its characteristic length.
-    pub(super) fn new(
-        mechanism: &Mechanism,
-        goal: &Goal,
-        coordinates: &[usize],
-        length: f64,
-    ) -> Self {
+    /// `length` is the characteristic length; [`GoalRows::place`] follows.
+    pub(super) fn new(mechanism: &Mechanism, goal: &Goal, length: f64) -> Self {
         let n = mechanism.n();
-        let place = |c: &usize| coordinates.partition_point(|x| x < c);
-        let own = coordinates_of(mechanism, goal);
-        let columns = own.iter().map(|c| (*c, place(c))).collect();
-        let (source, jacobian, columns) = match goal.objective {
+        let chain_of = |end_effector| Chain::new(mechanism, end_effector);
+        let mut own = Vec::new();
+        let (source, jacobian) = match goal.objective {
             Objective::Frame { end_effector, .. } => {
-                let chain = Chain::new(mechanism, end_effector);
-                let columns = own.iter().map(place).enumerate().collect();
+                let chain = chain_of(end_effector);
+                own.extend_from_slice(chain.coordinates());
                 let jacobian = Matrix::zeros(6, chain.n());
-                (Source::Frame(chain), jacobian, columns)
+                (Source::Frame(chain), jacobian)
             }
-            Objective::RelativeFrame { .. } => {
-                let other = Matrix::zeros(6, n);
-                (Source::Relative { other }, Matrix::zeros(6, n), columns)
+            Objective::RelativeFrame { end_effector, reference, .. } => {
+                own.extend_from_slice(chain_of(end_effector).coordinates());
+                own.extend_from_slice(chain_of(reference).coordinates());
+                own.sort_unstable();
+                own.dedup();
+                (Source::Relative { other: Matrix::zeros(6, n) }, Matrix::zeros(6, n))
             }
             Objective::CenterOfMass { .. } => {
-                (Source::CenterOfMass(MassMatrix::new(mechanism)), Matrix::zeros(3, n), columns)
+                own.extend(0..n);
+                (Source::CenterOfMass(MassMatrix::new(mechanism)), Matrix::zeros(3, n))
             }
-            Objective::Gaze { .. } => {
+            Objective::Gaze { end_effector, .. } => {
+                own.extend_from_slice(chain_of(end_effector).coordinates());
                 let (memory, world) = (Matrix::zeros(6, n), Matrix::zeros(3, n));
-                (Source::Gaze { memory, world }, Matrix::zeros(6, n), columns)
+                (Source::Gaze { memory, world }, Matrix::zeros(6, n))
             }
         };
+        let is_narrow = matches!(source, Source::Frame(_));
+        let column = |(i, c): (usize, usize)| (if is_narrow { i } else { c }, c);
         let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
         let rows = (0..6).filter(|&i| components(&goal.objective)[i]);
         let rows = rows.map(|i| (i, goal.weight * scale(i))).collect();
+        let columns = own.into_iter().enumerate().map(column).collect();
         Self { goal: *goal, source, jacobian, columns, rows }
+    }
+
+    /// The coordinates that can change the error, ascending, before they are placed.
+    pub(super) fn coordinates(&self) -> impl Iterator<Item = usize> + '_ {
+        self.columns.iter().map(|(_, c)| *c)
+    }
+
+    /// Replaces them by their places among the coordinates of the problem, ascending.
+    pub(super) fn place(&mut self, coordinates: &[usize]) {
+        for (_, c) in &mut self.columns {
+            *c = coordinates.partition_point(|x| x < c);
+        }
     }
 
     /// True if it needs the state of the whole tree.
@@ -281,7 +278,8 @@ mod tests {
                 Goal::center_of_mass(center),
                 Goal::gaze(right, b * (Vec3::Z * 0.8)),
             ] {
-                let mut rows = GoalRows::new(&robot, &goal.with_weight(2.0), &coordinates, 0.5);
+                let mut rows = GoalRows::new(&robot, &goal.with_weight(2.0), 0.5);
+                rows.place(&coordinates);
                 let m = rows.rows.len();
                 let mut jacobian = vec![0.0; m * n];
                 rows.error(&q, Some(&state));

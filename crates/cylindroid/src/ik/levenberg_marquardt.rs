@@ -16,7 +16,7 @@
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
 use super::damped_step::{Damped, DampedProblem};
 use super::goal::Goal;
-use super::goal_rows::{GoalRows, coordinates_of};
+use super::goal_rows::GoalRows;
 use super::half_space_rows::HalfSpaceRows;
 use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, MAX_COORDINATES};
@@ -60,15 +60,16 @@ impl Problem {
         let length = options.length.unwrap_or_else(|| mechanism.reach());
         let of_half_space =
             |h: &HalfSpace| Chain::new(mechanism, h.end_effector).coordinates().to_vec();
+        let mut goals: Vec<GoalRows> =
+            goals.iter().map(|goal| GoalRows::new(mechanism, goal, length)).collect();
         let mut coordinates: Vec<usize> = goals
             .iter()
-            .flat_map(|goal| coordinates_of(mechanism, goal))
+            .flat_map(GoalRows::coordinates)
             .chain(options.half_spaces.iter().flat_map(of_half_space))
             .collect();
         coordinates.sort_unstable();
         coordinates.dedup();
-        let goals: Vec<GoalRows> =
-            goals.iter().map(|goal| GoalRows::new(mechanism, goal, &coordinates, length)).collect();
+        goals.iter_mut().for_each(|goal| goal.place(&coordinates));
         let half_spaces = HalfSpaceRows::new(mechanism, &options.half_spaces);
         let needs_state = goals.iter().any(GoalRows::needs_state) || !half_spaces.is_empty();
         let state = needs_state.then(|| mechanism.state(mechanism.home())).transpose()?;

@@ -34,7 +34,7 @@ use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
 use super::sensor_fit::SensorFit;
 use super::stall::{Stall, StallDetector, StallInputs, classify};
-use super::step::{Status, Step, Target};
+use super::step::{Aim, Status, Step, Target};
 use super::task_space::TaskSpace;
 use super::twist_step::TwistFollower;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
@@ -316,17 +316,13 @@ impl Servo {
             self.mechanism.check_q("secondary joint velocities", secondary_velocities)?;
         }
         target.check()?;
-        self.step_to_pose(q, &target, secondary_velocities)
+        self.step_towards(q, Aim::Target(target), secondary_velocities)
     }
 
     /// A step of a robot that does as it is told.
-    fn step_ideal(
-        &mut self,
-        q: &[f64],
-        target: &Target,
-        secondary_velocities: &[f64],
-    ) -> Result<Step> {
+    fn step_ideal(&mut self, q: &[f64], aim: Aim, secondary_velocities: &[f64]) -> Result<Step> {
         let pose = self.load_configuration(q)?;
+        let target = aim.target(pose);
         let desired = target.desired(pose, &self.options)?;
         self.load_jacobian(q)?;
         self.svd.decompose_warm(&self.task);
@@ -353,7 +349,7 @@ impl Servo {
         };
 
         self.note_configuration(q);
-        let is_left_behind = self.follow(target, &desired, pose, braking);
+        let is_left_behind = self.follow(&target, &desired, pose, braking);
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
         let scaled = position_error / self.options.length + orientation_error;

@@ -1,9 +1,11 @@
 //! Input and output of a servo step: target, status, errors.
+//!
+//! Checked  tests/it/servo/steps.rs, tests/it/servo/plant.rs
 
 use super::options::ServoOptions;
 use crate::control::solver::saturation::Saturation;
 use crate::error::{Error, Result};
-use crate::spatial::{Pose, Twist};
+use crate::spatial::{Pose, Rotation, Twist};
 
 /// A moving target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +49,35 @@ impl Target {
         let twist = desired.feedback + desired.feed_forward;
         Error::check_finite("gain * error + feed-forward", &twist.to_array())?;
         Ok(desired)
+    }
+}
+
+/// What a step follows.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Aim {
+    Target(Target),
+    /// World axes, at the tool; without an error.
+    Twist(Twist),
+}
+
+impl Aim {
+    /// The target of a tool at this pose.
+    pub(super) fn target(self, pose: Pose) -> Target {
+        match self {
+            Self::Target(target) => target,
+            Self::Twist(feed_forward) => Target { pose, feed_forward },
+        }
+    }
+
+    /// A target moves on by its twist for `time` (s).
+    pub(super) fn after(self, time: f64) -> Self {
+        let Self::Target(Target { pose, feed_forward }) = self else { return self };
+        let turn = Rotation::exp(feed_forward.angular * time);
+        let pose = Pose {
+            rotation: (turn * pose.rotation).renormalised(),
+            translation: pose.translation + feed_forward.linear * time,
+        };
+        Self::Target(Target { pose, feed_forward })
     }
 }
 

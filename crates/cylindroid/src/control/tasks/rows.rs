@@ -73,8 +73,8 @@ impl TaskServo {
                 continue;
             };
             let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
-            collisions.model.gradient_into(&self.state, near, &mut self.gradient);
-            collisions.model.moving_into(&self.state, near, &mut self.moving);
+            let (gradient, moving) = (&mut self.gradient, &mut self.moving);
+            collisions.model.gradient_and_moving_into(&self.state, near, gradient, moving);
             let room = near.distance - gap;
             self.load_distance(first + place, room);
         }

@@ -169,6 +169,16 @@ fn redundant_sensors_lower_the_noise() {
         for (a, b) in servo.configuration().iter().zip(&q) {
             assert!((a - b).abs() < 1e-9, "{name}");
         }
+        // In any order.
+        let read: Vec<(usize, f64)> =
+            passive.iter().map(|&i| (i, q[i] + random.within(-1e-4, 1e-4))).collect();
+        let reversed: Vec<(usize, f64)> = read.iter().rev().copied().collect();
+        let [one, other] = [read, reversed].map(|sensors| {
+            servo.start_from(&q).unwrap();
+            servo.step_measured(&actuated, &sensors, target).unwrap();
+            servo.configuration().to_vec()
+        });
+        assert_eq!(one, other, "{name}");
         let driven = mechanism.actuated().next().unwrap();
         for wrong in [driven, mechanism.n()] {
             let error = servo.step_measured(&actuated, &[(wrong, 0.0)], target).unwrap_err();

@@ -8,7 +8,7 @@ use cylindroid::control::{
     simulate,
 };
 use cylindroid::kinematics::EndEffector;
-use cylindroid::model::Mechanism;
+use cylindroid::model::{Inclusion, Mechanism};
 use cylindroid::{Pose, Servo, ServoOptions, Twist, Vec3};
 
 use crate::support::Random;
@@ -416,4 +416,44 @@ fn tasks_keep_limits_too() {
         }
     }
     assert!(unknown > 3e-3, "{unknown}");
+}
+
+/// On a turned foundation the joints move alike.
+#[test]
+fn robots_that_lag_move_alike_on_any_foundation() {
+    let panda = catalogue::load("panda").unwrap();
+    let mut random = Random(4);
+    let run = |mechanism: &Mechanism, foundation: Pose| {
+        let mut options = options(mechanism, 0.002);
+        options.plant = PLANTS[1];
+        let mut servo = Servo::new(mechanism, options).unwrap();
+        let mut drives = Drives::new(mechanism.home(), PLANTS[1]);
+        let mut target = cylindroid::control::Target::from(tool(mechanism, mechanism.home()));
+        target.pose.translation += foundation.rotation * Vec3::new(0.9, 0.3, -0.2);
+        target.feed_forward.linear = foundation.rotation * Vec3::new(0.0, 0.05, 0.0);
+        for _ in 0..600 {
+            servo.step(&drives.q, target).unwrap();
+            target.pose.translation += target.feed_forward.linear * 0.002;
+            drives.pass(mechanism, servo.joint_velocities(), 0.002);
+        }
+        drives.q
+    };
+    let own = run(&panda, Pose::IDENTITY);
+    for _ in 0..3 {
+        let foundation = random.pose();
+        let mut builder = Mechanism::builder("moved");
+        let how = Inclusion {
+            name: "",
+            parent: "foundation",
+            parent_from_root: foundation,
+            free: false,
+            start: panda.home(),
+        };
+        builder.include(&panda, how).unwrap();
+        builder.tool(&panda.frame_of(panda.tool()).name);
+        let moved = builder.build().unwrap();
+        let q = run(&moved, foundation);
+        let most = own.iter().zip(&q).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+        assert!(most < 1e-8, "{foundation:?}: {most}");
+    }
 }

@@ -3,10 +3,9 @@
 //! Checked  tests/it/servo/twist.rs
 
 use super::super::stall::Stall;
-use super::super::step::Target;
+use super::super::step::Aim;
 use super::super::twist_step::{NEAR_SINGULAR, TwistStatus, TwistStep};
 use super::Servo;
-use super::behind_plant::Aim;
 use crate::error::{Error, Result};
 use crate::kinematics::ReferenceFrame;
 use crate::linalg::norm;
@@ -49,10 +48,9 @@ impl Servo {
         }
         let (dt, timeout) = (self.options.dt, self.options.command_timeout);
         let (desired, timed_out) = self.twist_follower.desired(command, dt, timeout);
-        let target = Target { pose: self.predicted_pose(q)?, feed_forward: desired };
         let at_rest = desired == Twist::ZERO;
         let paused = if at_rest { std::mem::take(&mut self.options.secondary) } else { Vec::new() };
-        let result = self.step_towards(q, &target, &[], Aim::Twist);
+        let result = self.step_towards(q, Aim::Twist(desired), &[]);
         if at_rest {
             self.options.secondary = paused;
         }
