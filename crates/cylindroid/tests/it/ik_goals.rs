@@ -1,9 +1,11 @@
 //! Goals of inverse kinematics beside frames: relative frames, the centre of mass, gaze; postures.
 
 use cylindroid::control::{MotionTask, TaskObjective, goals_of};
-use cylindroid::ik::{Goal, IkOptions, MissReason, Objective, Solution, Solver, Task, solve};
+use cylindroid::ik::{
+    Goal, HalfSpace, IkOptions, MissReason, Objective, Solution, Solver, Task, solve,
+};
 use cylindroid::kinematics::{MassMatrix, State};
-use cylindroid::model::Mechanism;
+use cylindroid::model::{Inclusion, Mechanism};
 use cylindroid::{Matrix, Pose, Vec3, catalogue};
 
 use crate::servo::two_armed;
@@ -303,4 +305,60 @@ fn tasks_are_goals() {
     let still = TaskObjective::JointVelocities { velocities: vec![0.0; robot.n()] };
     let error = goals_of(&[MotionTask::new("still", still)]).unwrap_err().to_string();
     assert!(error.contains("still") && error.contains("gaze"), "{error}");
+}
+
+/// On a turned foundation, and with the goals in another order, the same joint positions are found.
+#[test]
+fn goals_are_reached_alike_on_any_foundation_and_in_any_order() {
+    let panda = catalogue::load("panda").unwrap();
+    let guess = [0.1, 0.3, -0.2, -1.6, 0.3, 1.5, 0.2];
+    let there = panda.state(&[0.4, 0.2, 0.1, -1.8, 0.2, 1.7, 0.4]).unwrap();
+    let solved = |robot: &Mechanism, foundation: Pose, reversed: bool| {
+        let frame = |name: &str| robot.frame(name).unwrap();
+        let own = |name: &str| there.pose(panda.frame(name).unwrap());
+        let point = foundation * (own("flange") * (Vec3::Z * 0.7));
+        let apart = own("link4").inverse() * own("flange");
+        let mut goals = vec![
+            Goal::frame(frame("link4"), Task::POSITION, foundation * own("link4")),
+            Goal::gaze(frame("flange"), point).with_weight(0.5),
+            Goal::relative(frame("flange"), frame("link4"), apart),
+        ];
+        if reversed {
+            goals.reverse();
+        }
+        let half_space = HalfSpace {
+            name: "wall".to_owned(),
+            end_effector: frame("flange").into(),
+            point: foundation * (own("flange").translation - Vec3::X * 1e-3),
+            normal: foundation.rotation * Vec3::X,
+        };
+        let options = IkOptions {
+            initial_guess: Some(guess.to_vec()),
+            half_spaces: vec![half_space],
+            ..IkOptions::default()
+        };
+        let found = solve(robot, &goals, &options).unwrap();
+        assert!(found.success, "{foundation:?}: {:?}", found.reason);
+        found.q
+    };
+    let own = solved(&panda, Pose::IDENTITY, false);
+    let differs =
+        |q: &[f64]| own.iter().zip(q).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(differs(&solved(&panda, Pose::IDENTITY, true)) < 1e-8);
+    let mut random = Random(6);
+    for _ in 0..4 {
+        let foundation = random.pose();
+        let mut builder = Mechanism::builder("moved");
+        let how = Inclusion {
+            name: "",
+            parent: "foundation",
+            parent_from_root: foundation,
+            free: false,
+            start: panda.home(),
+        };
+        builder.include(&panda, how).unwrap();
+        let moved = builder.build().unwrap();
+        let most = differs(&solved(&moved, foundation, false));
+        assert!(most < 1e-8, "{foundation:?}: {most}");
+    }
 }
