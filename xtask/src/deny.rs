@@ -1,20 +1,26 @@
-//! Licences, duplicates, sources and advisories of dependencies, by cargo-deny and `deny.toml`.
+//! Licences, duplicates, sources and advisories of dependencies, by cargo-deny and `deny.toml`;
+//! licences of npm and Python packages by `licences.py`.
 
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 
+use crate::python;
 use crate::shell::{cargo, root, run};
 
 const VERSION: &str = "0.20.2";
 
-/// Checks the dependencies of all crates.
+/// The packages of the viewer and of the book.
+const LOCK_FILES: [&str; 2] = ["viewer/package-lock.json", "xtask/book/package-lock.json"];
+
+/// Checks the dependencies of all crates, and the licences of npm and Python packages.
 ///
 /// # Errors
 /// A licence that is not allowed, a duplicate without a reason, a source that is not crates.io; no
-/// way to crates.io for the first installation.
+/// way to crates.io or PyPI for the first installation.
 pub(crate) fn check() -> Result<()> {
-    with(&["bans", "licenses", "sources"])
+    with(&["bans", "licenses", "sources"])?;
+    run(Command::new(python::for_tests()?).arg("xtask/licences.py").args(LOCK_FILES))
 }
 
 /// `--advisories` alone.

@@ -6,6 +6,7 @@ mod bench_peers;
 mod book;
 mod corpus;
 mod deny;
+mod fuzz;
 mod instructions;
 mod layers;
 mod models;
@@ -47,12 +48,16 @@ cargo xtask <task>
   viewer-load [seconds]
             serves the viewer to 20 clients for a minute, and prints memory and lateness
   deny      checks licences, duplicates and sources of dependencies with cargo-deny, which it
-            installs (needs crates.io); --advisories reads those of RustSec (needs github.com)
+            installs (needs crates.io), and licences of npm and Python packages (needs PyPI);
+            --advisories reads those of RustSec (needs github.com)
+  simd      runs the tests of laws once for each form of the kernels that the processor has beside
+            its best (CYLINDROID_SIMD); a step of test
   limits [millions] [first round]
             runs 10 million servo steps (release build) over random robots, tasks, limits, starts
             and pushes, and prints every limit that is left, with the round that repeats it
-  fuzz [mutations]
-            loads 10 000 mutations of real files of every format (release build)
+  fuzz [--minutes M] [--seed N]
+            for 10 minutes: random mutations of files of every format, messages of the viewer,
+            command lines and calls from Python, and steps of servos (release build)
   bench-peers [--quick] [--only NAMES]
             installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
             packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
@@ -97,12 +102,13 @@ fn run() -> Result<()> {
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
         Some("deny") => deny::task(std::env::args().nth(2).as_deref()),
+        Some("simd") => models::fetch().and_then(|robots| steps::simd(&robots)),
         Some("limits") => {
             let arguments: Vec<String> = std::env::args().skip(2).collect();
             let argument = |i: usize| arguments.get(i).map(String::as_str);
             steps::limits(argument(0), argument(1))
         }
-        Some("fuzz") => steps::fuzz(std::env::args().nth(2).as_deref()),
+        Some("fuzz") => fuzz::task(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("bench-peers") => {
             bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
         }

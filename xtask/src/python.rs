@@ -62,9 +62,14 @@ pub(crate) fn wheel(python: &Path) -> Result<PathBuf> {
     }
 }
 
+/// A Python that has what the tests of the package need.
+pub(crate) fn for_tests() -> Result<PathBuf> {
+    with_requirements(&root().join("target/python-venv"))
+}
+
 /// A Python that has the package and what its tests need, and the wheel.
 fn installed() -> Result<(PathBuf, PathBuf)> {
-    let python = with_requirements(&root().join("target/python-venv"))?;
+    let python = for_tests()?;
     let wheel = wheel(&python)?;
     pip(&python, &["--force-reinstall", "--no-deps", &wheel.to_string_lossy()])?;
     Ok((python, wheel))
@@ -89,6 +94,17 @@ pub(crate) fn write_outputs() -> Result<()> {
     let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider"];
     let book = format!("{TESTS}/test_book.py");
     run(Command::new(python).args(pytest).arg(book).env("CYLINDROID_WRITE_BOOK", "1"))
+}
+
+/// Calls with random arguments for so many seconds, from this seed on.
+pub(crate) fn fuzz(seconds: f64, seed: u64) -> Result<()> {
+    let (python, _) = installed()?;
+    let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider"];
+    run(Command::new(python)
+        .args(pytest)
+        .arg(format!("{TESTS}/test_fuzz.py"))
+        .env("CYLINDROID_FUZZ_SECONDS", seconds.to_string())
+        .env("CYLINDROID_FUZZ_SEED", seed.to_string()))
 }
 
 /// Builds, installs and tests the package: pytest, the stubs, the tutorials' examples; then the

@@ -1,5 +1,6 @@
 //! The steps of the tasks: each a command that a person could type.
 
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -50,8 +51,47 @@ pub(crate) fn test() -> Result<()> {
     step("tests", || {
         run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
     })?;
+    step("forms of the kernels", || simd(&robots))?;
     step("viewer in a browser", viewer::test)?;
     step("Python package", python::test)
+}
+
+/// Tests of laws that every form of the kernels must keep, by the beginning of their names.
+const OF_ALL_FORMS: [&str; 16] = [
+    "analytic::",
+    "batch::",
+    "closure::",
+    "graph::",
+    "ik::",
+    "ik_goals::",
+    "inverse::",
+    "inverse_batch::",
+    "kinematics::",
+    "manipulability::",
+    "mass_matrix::",
+    "pinocchio::",
+    "screws::",
+    "servo::",
+    "svd::",
+    "symmetric_eigen::",
+];
+
+/// The chosen tests with each form of the kernels but the best that the processor has, with which
+/// all tests run: without registers, and with those of AVX2.
+pub(crate) fn simd(robots: &Path) -> Result<()> {
+    let mut forms = vec!["scalar"];
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx512f") {
+        forms.push("avx2");
+    }
+    for form in forms {
+        println!("CYLINDROID_SIMD={form}");
+        let tests = ["test", "--quiet", "--package", "cylindroid", "--test", "it", "--"];
+        run(cargo(&[&tests[..], &OF_ALL_FORMS].concat())
+            .env("CYLINDROID_TEST_ROBOTS", robots)
+            .env("CYLINDROID_SIMD", form))?;
+    }
+    Ok(())
 }
 
 /// The models whose vectors MuJoCo makes.
@@ -135,15 +175,6 @@ pub(crate) fn limits(millions: Option<&str>, first: Option<&str>) -> Result<()> 
     let mut test = cargo(&[&filter[..], &show].concat());
     test.env("CYLINDROID_LIMIT_STEPS", format!("{:.0}", millions * 1e6));
     run(test.env("CYLINDROID_LIMIT_SEED", first.unwrap_or("0")))
-}
-
-/// Mutations of real files of every format; fails if a reader panics.
-pub(crate) fn fuzz(mutations: Option<&str>) -> Result<()> {
-    let robots = models::fetch()?;
-    let filter = ["test", "--release", "--package", "cylindroid", "--test", "formats"];
-    let mut test = cargo(&[&filter[..], &["--", "mutated_files"]].concat());
-    test.env("CYLINDROID_TEST_ROBOTS", &robots);
-    run(test.env("CYLINDROID_FUZZ", mutations.unwrap_or("10000")))
 }
 
 /// The figures of the README and the book, by the command line and the Python package.

@@ -149,16 +149,37 @@ impl Numbers<'_> {
             return Err(Failure::option(name, self.shape_text(), "poses are an array (N, 4, 4)"));
         };
         let matrices = self.values().as_chunks::<4>().0.as_chunks::<4>().0;
-        matrices.iter().map(|rows| Ok(Pose::from_matrix(*rows)?)).collect()
+        matrices.iter().map(|rows| pose_of(name, *rows)).collect()
     }
 
     /// A pose from a 4 x 4 matrix.
     pub(crate) fn pose(&self, name: &'static str) -> Result<Pose> {
         match (self.shape(), self.values().as_chunks().0) {
-            ([4, 4], [a, b, c, d]) => Ok(Pose::from_matrix([*a, *b, *c, *d])?),
+            ([4, 4], [a, b, c, d]) => pose_of(name, [*a, *b, *c, *d]),
             _ => Err(Failure::option(name, self.shape_text(), "a pose is a matrix of 4 x 4")),
         }
     }
+}
+
+/// A pose from its rows; an error names the argument.
+pub(crate) fn pose_of(name: &'static str, rows: [[f64; 4]; 4]) -> Result<Pose> {
+    Pose::from_matrix(rows).map_err(|error| match error {
+        Error::InvalidOption { value, reason, .. } => Failure::option(name, value, reason),
+        other => entries_of(name, other),
+    })
+}
+
+/// An error about entries of an argument, with the argument's name.
+pub(crate) fn entries_of(name: &str, error: Error) -> Failure {
+    Failure::Core(match error {
+        Error::NotFinite { what, value } => {
+            Error::NotFinite { what: format!("{name}: {what}"), value }
+        }
+        Error::OutOfRange { what, value, range } => {
+            Error::OutOfRange { what: format!("{name}: {what}"), value, range }
+        }
+        other => other,
+    })
 }
 
 /// A shape as Python writes it.

@@ -73,6 +73,19 @@ pub(crate) fn argument<'a, 'py, T: FromPyObject<'a, 'py>>(
     object.extract::<T>().map_err(|error| unfit(object.py(), error.into()))
 }
 
+/// Largest number of anything that is found, drawn or repeated: time and memory grow with it.
+const MOST: usize = 1_000_000;
+
+/// The same for a number of things.
+pub(crate) fn count(object: &Bound<'_, PyAny>) -> PyResult<usize> {
+    let n: usize = argument(object)?;
+    if n > MOST {
+        let message = format!("{n} is too large: at most {MOST}");
+        return Err(of_class("InvalidOptionError", &message));
+    }
+    Ok(n)
+}
+
 /// The same for a value inside an argument, here with its name.
 pub(crate) fn entry<'a, 'py, T: FromPyObject<'a, 'py>>(
     name: &str,

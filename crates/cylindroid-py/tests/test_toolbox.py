@@ -197,3 +197,50 @@ def test_what_is_missing_says_what_to_use():
         robot.other
     with pytest.raises(cy.InvalidOptionError, match="no links"):
         Robot(Table([]))
+
+
+# The public members of `DHRobot`, with those of its base classes, of roboticstoolbox-python 1.5.0.
+MEMBERS = """
+A URDF a accel accel_x addconfiguration addconfiguration_attr alpha analytic_ik base base_link
+cinertia closest_point collided comment config_validate configs configurations_str control_mode
+copy coriolis coriolis_x d default_backend delete_rne dfs_links dhunique dotfile dynamics
+dynamics_list dynchanged ee_links ets fdyn fellipse fkine fkine_all fkine_geometry fkine_path
+friction get_path graph gravity gravload gravload_x grippers hascollision hasdynamics
+hasgeometry hessian0 hessiane hierarchy ik_GN ik_LM ik_NR ikine_6s ikine_GN ikine_LM ikine_NR
+ikine_QP ikine_analytic inertia inertia_x iscollided islimit isprismatic isrevolute
+isselfcollided isspherical itorque jacob0 jacob0_analytical jacob0_dot jacobe jacobm
+joint_velocity_damper jointdynamics jtraj keywords link_collision_damper link_dict linkcolormap
+links manipulability manufacturer mdh n name nbranches nlinks nofriction offset partial_fkine0
+payload payload_capacity perturb plot plot_ellipse plot_fellipse plot_vellipse prismaticjoints q
+qd qdd qlim r random_q reach revolutejoints rne rne_python segments set_default_backend
+showgraph structure symbolic teach theta todegrees tool toradians twists urdf_filepath
+urdf_string vellipse vision_collision_damper
+""".split()
+
+
+def test_every_member_is_there_or_says_what_to_use():
+    robot = Robot("panda")
+    here = 0
+    for name in MEMBERS:
+        try:
+            getattr(robot, name)
+            here += 1
+        except NotImplementedError as error:
+            message = str(error)
+            assert message.startswith(f"'{name}' of the Robotics Toolbox is not in"), message
+    assert here >= 32
+
+
+def test_a_robot_keeps_a_state():
+    robot = Robot("panda")
+    for name in ("q", "qd", "qdd"):
+        assert not getattr(robot, name).any()
+        setattr(robot, name, range(7))
+        kept = getattr(robot, name)
+        assert kept.tolist() == list(range(7))
+        kept[0] = 9.0  # a copy
+        assert getattr(robot, name)[0] == 0.0
+        for bad in ([0.0], [np.nan] * 7, "abc", None):
+            with pytest.raises(cy.InvalidOptionError, match=f"^{name}: 7"):
+                setattr(robot, name, bad)
+    assert robot.isrevolute(2) and not robot.isprismatic(2)

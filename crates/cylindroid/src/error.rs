@@ -32,7 +32,7 @@ pub enum Error {
     },
 
     /// A name unknown to the model or the library.
-    #[error("no {what} named '{name}'{}", offer(similar))]
+    #[error("no {what} named '{}'{}", beginning(name), offer(similar))]
     UnknownName {
         /// The kind of thing: "frame", "joint", "catalogue model", ...
         what: &'static str,
@@ -212,7 +212,21 @@ fn offer(similar: &[String]) -> String {
 }
 
 fn refused(value: &str) -> String {
-    if value.is_empty() { " is missing".to_owned() } else { format!(" = {value} cannot be used") }
+    if value.is_empty() {
+        return " is missing".to_owned();
+    }
+    format!(" = {} cannot be used", beginning(value))
+}
+
+/// Longest part of a given text in a message [characters].
+const LONGEST_SHOWN: usize = 200;
+
+/// A given text for messages, without the end of a long one.
+fn beginning(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_SHOWN) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}...", &text[..end]),
+    }
 }
 
 fn hint_text(hint: &str) -> String {
@@ -266,6 +280,18 @@ mod tests {
     fn unknown_name_offers_the_nearest_first() {
         let error = Error::unknown("frame", "tool_0", ["base", "tool0", "wrist_3_link"]);
         assert!(error.to_string().starts_with("no frame named 'tool_0'; nearest: tool0"));
+    }
+
+    #[test]
+    fn long_texts_are_not_repeated() {
+        let long = "\u{e9}".repeat(5000);
+        let unknown = Error::unknown("frame", &long, ["tool0"]);
+        let invalid =
+            Error::InvalidOption { option: "name", value: long, reason: "it is long".to_owned() };
+        for error in [unknown, invalid] {
+            let message = error.to_string();
+            assert!(message.contains("\u{e9}...") && message.len() < 500, "{message}");
+        }
     }
 
     #[test]

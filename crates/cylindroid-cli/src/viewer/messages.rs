@@ -173,8 +173,9 @@ pub(super) struct Complaint {
 
 impl Complaint {
     pub(super) fn new(place: &str, culprit: &str, what: &str, way_out: &str) -> Self {
-        let message =
-            if way_out.is_empty() { what.to_owned() } else { format!("{what}; {way_out}") };
+        // It may repeat a long part of the message that it is about.
+        let what = beginning(what, 300);
+        let message = if way_out.is_empty() { what } else { format!("{what}; {way_out}") };
         Self {
             reply_to: None,
             culprit: culprit.into(),
@@ -190,9 +191,9 @@ impl Complaint {
         let (culprit, way_out) = match error {
             Error::UnknownName { name, similar, .. } => {
                 let offer = similar.join(", ");
-                (name.clone(), if offer.is_empty() { offer } else { format!("use {offer}") })
+                (short(name), if offer.is_empty() { offer } else { format!("use {offer}") })
             }
-            Error::Dimension { what, hint, .. } => (what.clone(), hint.clone()),
+            Error::Dimension { what, hint, .. } => (short(what), hint.clone()),
             Error::NotFinite { what, .. } => (what.clone(), "give finite values".to_owned()),
             Error::OutOfRange { what, range, .. } => {
                 (what.clone(), format!("give magnitudes up to {range:e}"))
@@ -259,13 +260,16 @@ fn at(value: &Value, path: &str) -> Option<String> {
     (!found.is_object()).then(|| short(&found.to_string()))
 }
 
-/// The beginning of a text.
 fn short(text: &str) -> String {
-    const MOST: usize = 60;
-    if text.chars().count() <= MOST {
-        return text.to_owned();
+    beginning(text, 60)
+}
+
+/// The first `most` characters of a text.
+fn beginning(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}...", &text[..end]),
     }
-    text.chars().take(MOST).chain("...".chars()).collect()
 }
 
 #[cfg(test)]

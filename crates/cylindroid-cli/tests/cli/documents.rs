@@ -17,7 +17,7 @@ const GOALS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/goals.toml"
 const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");
 
 /// All commands, as the help lists them.
-fn commands() -> Vec<String> {
+pub(crate) fn commands() -> Vec<String> {
     let help = text(&["--help"]);
     let list = help.split("\nCommands:\n").nth(1).and_then(|rest| rest.split("\n\n").next());
     let entries = list.unwrap().lines().filter_map(|line| line.strip_prefix("  "));
@@ -32,7 +32,7 @@ fn document(name: &str) -> String {
 
 /// What a reader would type: lines and code of a text that begin with the binary or its `cargo
 /// run`, without their descriptions.
-fn examples(document: &str, commands: &[String]) -> Vec<String> {
+pub(crate) fn examples(document: &str, commands: &[String]) -> Vec<String> {
     let lines = document.lines().chain(document.split('`'));
     let typed = lines.filter_map(|line| {
         let line = line.trim();

@@ -60,6 +60,60 @@ fn axes_of_a_task() {
     }
 }
 
+fn distance_from(start: &[f64], found: &Value) -> f64 {
+    let q = numbers(&found["q"]);
+    q.iter().zip(start).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+#[test]
+fn the_nearest_solution() {
+    let start = [0.5, -1.0, 0.4, -2.0, 1.0, 1.5, -0.7];
+    let from = list(&start);
+    let search = ["ik", "panda", "--to", "0.3,0.1,0.4", "--q", &from];
+    let any = distance_from(&start, &json(&search, 0));
+    let nearest = distance_from(&start, &json(&[&search[..], &["--nearest"]].concat(), 0));
+    assert!(nearest < any - 0.1, "{nearest} {any}");
+}
+
+/// The inverse of a metric M has columns orthogonal in M to the null
+/// space, and without one in the unit metric.
+#[test]
+fn the_metric_of_a_hyperbolic_inverse() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("twists.csv");
+    // Two screws of pitch 0.2 and 0.3 on one axis, each of them twice: a null space of two.
+    std::fs::write(&path, "0,0,0.2,0,0,1\n0,0,0.4,0,0,2\n0,0,0.3,0,0,1\n0,0,-0.3,0,0,-1\n")
+        .unwrap();
+    let path = path.to_str().unwrap();
+    let null_space = [[2.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0]];
+    for (metric, weights) in [(None, [1.0; 4]), (Some("1,2,3,4"), [1.0, 2.0, 3.0, 4.0])] {
+        let mut words = vec!["screws", path, "--h", "0.1", "--twist", "0,0,0.7,0,0,3"];
+        words.extend(metric.iter().flat_map(|m| ["--joint-metric", m]));
+        let found = json(&words, 0);
+        let velocities = numbers(&found["inverses"][0]["velocities"]["joint_velocities"]);
+        for of in null_space {
+            let product: f64 = (0..4).map(|i| of[i] * weights[i] * velocities[i]).sum();
+            assert!(product.abs() < 1e-9, "{metric:?}: {velocities:?}");
+        }
+        let rotation = velocities[0] + 2.0 * velocities[1] + velocities[2] - velocities[3];
+        assert!((rotation - 3.0).abs() < 1e-9, "{velocities:?}");
+    }
+}
+
+/// An efficiency is the norm of forces over that of torques, squared.
+#[test]
+fn the_weights_of_internal_forces() {
+    let finite = |more: &[&str]| {
+        numbers(
+            &json(&[&["manipulability", "two-arm"], more].concat(), 0)["internal_force"]["finite"],
+        )
+    };
+    let usual = finite(&["--wt", "1"]);
+    for (weighted, plain) in finite(&["--wt", "4"]).iter().zip(&usual) {
+        assert!((weighted / plain - 4.0).abs() < 1e-9, "{weighted} {plain}");
+    }
+}
+
 #[test]
 fn iterations_end_a_search() {
     // Far enough for one iteration and the refinement after it not to arrive.

@@ -8,6 +8,7 @@ mod closed;
 mod distance;
 mod documents;
 mod flags;
+mod fuzz;
 mod ik;
 mod inverses;
 mod measured;

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import Mechanism, load
+from . import InvalidOptionError, Mechanism, load
 from ._toolbox import is_toolbox_robot, mechanism_of
 
 __all__ = ["IKSolution", "Robot"]
@@ -39,25 +39,30 @@ _AXES = {
 
 #: What to use for members of the Toolbox that are not here.
 _INSTEAD = {
-    "ets twists dhunique": "Mechanism.joint_axes",
-    "ikine_a ikine_analytic ikine_6s analytic_ik": "Mechanism.ik, which uses closed forms",
+    "ets twists dhunique A a alpha d theta offset mdh": "Mechanism.joint_axes and Mechanism.fk_all",
+    "ikine_a ikine_analytic ikine_6s analytic_ik isspherical": "Mechanism.ik, which uses closed "
+    "forms",
     "jtraj": "cylindroid.JointMove",
     "vellipse plot_vellipse plot_ellipse": "cylindroid.plot.ellipsoid of "
     "Mechanism.manipulability(q).kinematic",
     "fellipse plot_fellipse": "cylindroid.plot.ellipsoid of "
     "Mechanism.manipulability(q).active_force",
     "plot teach": "cylindroid.show or cylindroid.plot.mechanism",
-    "inertia": "Mechanism.mass_matrix",
+    "inertia r": "Mechanism.mass_matrix",
     "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
     "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
     "partial_fkine0": "Mechanism.hessian",
-    "links link_dict dfs_links hierarchy showgraph dotfile": "Mechanism.joints and Mechanism.links",
+    "links link_dict dfs_links hierarchy showgraph dotfile nlinks nbranches": "Mechanism.joints and "
+    "Mechanism.links",
+    "base base_link tool ee_links": "Mechanism.frames, and tool= of fkine and jacob0",
     "URDF urdf_string urdf_filepath": "cylindroid.load",
     "rne rne_python fdyn accel accel_x coriolis coriolis_x cinertia gravload gravload_x "
     "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap": "",
     "addconfiguration addconfiguration_attr attach attach_to copy delete_rne dynchanged "
     "basemesh fkine_geometry fkine_path get_path graph linkcolormap segments symbolic todegrees "
-    "toradians update gravity grippers meshdir hasdynamics hascollision hasgeometry": "",
+    "toradians update gravity grippers meshdir hasdynamics hascollision hasgeometry comment "
+    "manufacturer keywords payload_capacity configurations_str config_validate jointdynamics "
+    "control_mode default_backend set_default_backend": "",
 }
 
 
@@ -119,6 +124,7 @@ class Robot:
         else:
             self.mechanism = load(robot)
             self._end = self.mechanism.tool
+        self._now = {name: np.zeros(self.n) for name in ("q", "qd", "qdd")}
 
     def __getattr__(self, name: str) -> Any:
         configs = self.__dict__.get("configs", {})
@@ -154,6 +160,50 @@ class Robot:
     def qr(self) -> NDArray[np.float64]:
         """The `qr` of the robot of the Toolbox, otherwise the home configuration, (n,)."""
         return self.configs.get("qr", self.mechanism.home).copy()
+
+    @property
+    def q(self) -> NDArray[np.float64]:
+        """A configuration to keep with the robot, (n,) [rad or m]; zero at first."""
+        return self._now["q"].copy()
+
+    @q.setter
+    def q(self, q: ArrayLike) -> None:
+        self._keep("q", q)
+
+    @property
+    def qd(self) -> NDArray[np.float64]:
+        """Joint velocities to keep with the robot, (n,) [rad/s or m/s]; zero at first."""
+        return self._now["qd"].copy()
+
+    @qd.setter
+    def qd(self, qd: ArrayLike) -> None:
+        self._keep("qd", qd)
+
+    @property
+    def qdd(self) -> NDArray[np.float64]:
+        """Joint accelerations to keep with the robot, (n,) [rad/s^2 or m/s^2]; zero at first."""
+        return self._now["qdd"].copy()
+
+    @qdd.setter
+    def qdd(self, qdd: ArrayLike) -> None:
+        self._keep("qdd", qdd)
+
+    def _keep(self, name: str, values: ArrayLike) -> None:
+        try:
+            values = np.array(values, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise InvalidOptionError(f"{name}: {self.n} numbers are needed") from error
+        if values.shape != (self.n,) or not np.all(np.isfinite(values)):
+            raise InvalidOptionError(f"{name}: {self.n} finite numbers are needed")
+        self._now[name] = values
+
+    def isrevolute(self, j: int) -> bool:
+        """True if coordinate j is an angle."""
+        return self.revolutejoints[j]
+
+    def isprismatic(self, j: int) -> bool:
+        """True if coordinate j is a length."""
+        return self.prismaticjoints[j]
 
     @property
     def reach(self) -> float:

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use super::PyAssembly;
 use crate::arrays::Numbers;
-use crate::error::{Result, argument};
+use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -110,7 +110,7 @@ impl PyMechanism {
         py: Python<'_>,
         guess: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] hold: Option<Vec<String>>,
-        #[pyo3(from_py_with = argument)] starts: usize,
+        #[pyo3(from_py_with = count)] starts: usize,
         #[pyo3(from_py_with = argument)] seed: u64,
     ) -> Result<PyAssemblyModes> {
         let m = &self.inner;

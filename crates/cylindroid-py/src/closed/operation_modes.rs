@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 
 use super::singularity::counts_of;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Result, argument};
+use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::table;
 
@@ -238,7 +238,7 @@ impl PyMechanism {
         &self,
         py: Python<'_>,
         q: Option<Numbers<'_>>,
-        #[pyo3(from_py_with = argument)] starts: usize,
+        #[pyo3(from_py_with = count)] starts: usize,
         #[pyo3(from_py_with = argument)] seed: u64,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
     ) -> Result<PyOperationModes> {

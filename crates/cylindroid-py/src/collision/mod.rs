@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 pub(crate) use self::distances::PyDistances;
 use self::shape::{Sizes, geometry};
 use crate::arrays::Numbers;
-use crate::error::{Result, argument};
+use crate::error::{Failure, Result, argument, count};
 use crate::mechanism::PyMechanism;
 
 /// The collision shapes of a mechanism and of obstacles, and the pairs of them that are watched.
@@ -107,6 +107,11 @@ fn placed(pose: Option<Numbers<'_>>) -> Result<Pose> {
     numbers.pose("pose")
 }
 
+/// The error for a collision model that another call changes.
+pub(crate) fn in_use<E>(_: E) -> Failure {
+    Failure::InUse("the collision model is in use by a call around this one".to_owned())
+}
+
 impl PyCollisionModel {
     /// The pairs nearer than a margin (m) at a configuration.
     pub(crate) fn near_at(&mut self, q: &[f64], margin: f64) -> Result<PyDistances> {
@@ -124,7 +129,7 @@ impl PyCollisionModel {
         #[pyo3(from_py_with = argument)] disabled: Option<Vec<[String; 2]>>,
         #[pyo3(from_py_with = argument)] srdf: Option<PathBuf>,
         #[pyo3(from_py_with = argument)] meshes: &str,
-        #[pyo3(from_py_with = argument)] samples: usize,
+        #[pyo3(from_py_with = count)] samples: usize,
         #[pyo3(from_py_with = argument)] seed: u64,
     ) -> Result<Self> {
         let inner = model(&mechanism.inner, (disabled, srdf), meshes, (samples, seed))?;
@@ -133,19 +138,22 @@ impl PyCollisionModel {
     }
 
     #[getter]
-    fn pairs(&self) -> Vec<(&str, &str)> {
-        let names = (0..self.inner.pairs().len()).map(|i| self.inner.names(i));
-        names.map(|[a, b]| (a, b)).collect()
+    fn pairs(slf: &Bound<'_, Self>) -> Result<Vec<(String, String)>> {
+        let model = &slf.try_borrow().map_err(in_use)?.inner;
+        let names = (0..model.pairs().len()).map(|i| model.names(i));
+        Ok(names.map(|[a, b]| (a.to_owned(), b.to_owned())).collect())
     }
 
     #[getter]
-    fn obstacles(&self) -> Vec<&str> {
-        self.inner.obstacles().collect()
+    fn obstacles(slf: &Bound<'_, Self>) -> Result<Vec<String>> {
+        let model = &slf.try_borrow().map_err(in_use)?.inner;
+        Ok(model.obstacles().map(str::to_owned).collect())
     }
 
     #[getter]
-    fn ignored(&self) -> Vec<(&str, &str)> {
-        self.inner.ignored().iter().map(|i| (i.what.as_str(), i.why.as_str())).collect()
+    fn ignored(slf: &Bound<'_, Self>) -> Result<Vec<(String, String)>> {
+        let model = &slf.try_borrow().map_err(in_use)?.inner;
+        Ok(model.ignored().iter().map(|i| (i.what.clone(), i.why.clone())).collect())
     }
 
     /// The pairs nearer than a margin, nearest first.
@@ -164,13 +172,15 @@ impl PyCollisionModel {
     /// Raises
     /// ------
     /// DimensionError, NotFiniteError
+    /// InUseError
+    ///     While another call changes the model, as during a step of a `TaskServo`.
     #[pyo3(signature = (q, margin=0.1))]
     fn near(
-        &mut self,
+        slf: &Bound<'_, Self>,
         q: Numbers<'_>,
         #[pyo3(from_py_with = argument)] margin: f64,
     ) -> Result<PyDistances> {
-        self.near_at(q.vector("q")?, margin)
+        slf.try_borrow_mut().map_err(in_use)?.near_at(q.vector("q")?, margin)
     }
 
     /// Adds an obstacle, which is watched against all links that can move.
@@ -202,7 +212,7 @@ impl PyCollisionModel {
     #[pyo3(signature = (name, shape, pose=None, *, radius=None, length=None, size=None, points=None, file=None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn add_obstacle(
-        &mut self,
+        slf: &Bound<'_, Self>,
         #[pyo3(from_py_with = argument)] name: &str,
         #[pyo3(from_py_with = argument)] shape: &str,
         pose: Option<Numbers<'_>>,
@@ -213,7 +223,8 @@ impl PyCollisionModel {
         #[pyo3(from_py_with = argument)] file: Option<PathBuf>,
     ) -> Result<()> {
         let shape = geometry(shape, Sizes { radius, length, size, points, file })?;
-        Ok(self.inner.add_obstacle(name, &shape, placed(pose)?)?)
+        let mut model = slf.try_borrow_mut().map_err(in_use)?;
+        Ok(model.inner.add_obstacle(name, &shape, placed(pose)?)?)
     }
 
     /// Moves an obstacle.
@@ -229,11 +240,12 @@ impl PyCollisionModel {
     /// UnknownNameError
     #[pyo3(signature = (name, pose))]
     fn move_obstacle(
-        &mut self,
+        slf: &Bound<'_, Self>,
         #[pyo3(from_py_with = argument)] name: &str,
         pose: Numbers<'_>,
     ) -> Result<()> {
-        Ok(self.inner.move_obstacle(name, placed(Some(pose))?)?)
+        let mut model = slf.try_borrow_mut().map_err(in_use)?;
+        Ok(model.inner.move_obstacle(name, placed(Some(pose))?)?)
     }
 
     /// Removes an obstacle.
@@ -246,18 +258,22 @@ impl PyCollisionModel {
     /// ------
     /// UnknownNameError
     #[pyo3(signature = (name))]
-    fn remove_obstacle(&mut self, #[pyo3(from_py_with = argument)] name: &str) -> Result<()> {
-        Ok(self.inner.remove_obstacle(name)?)
+    fn remove_obstacle(
+        slf: &Bound<'_, Self>,
+        #[pyo3(from_py_with = argument)] name: &str,
+    ) -> Result<()> {
+        Ok(slf.try_borrow_mut().map_err(in_use)?.inner.remove_obstacle(name)?)
     }
 
-    fn __repr__(&self) -> String {
-        format!(
+    fn __repr__(slf: &Bound<'_, Self>) -> Result<String> {
+        let model = &slf.try_borrow().map_err(in_use)?.inner;
+        Ok(format!(
             "<CollisionModel of '{}': {} shapes, {} pairs, {} obstacles>",
-            self.inner.mechanism().name(),
-            self.inner.bodies().len(),
-            self.inner.pairs().len(),
-            self.inner.obstacles().count()
-        )
+            model.mechanism().name(),
+            model.bodies().len(),
+            model.pairs().len(),
+            model.obstacles().count()
+        ))
     }
 }
 

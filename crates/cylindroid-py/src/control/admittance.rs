@@ -1,10 +1,10 @@
 //! The class `Admittance`: admittance control, a twist from a wrench.
 
 use cylindroid::control::{Admittance, AdmittanceGain};
-use cylindroid::{Matrix, Vec3};
+use cylindroid::{Error, Matrix, Vec3};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array, Numbers, entries_of};
 use crate::error::{Failure, Result, argument};
 
 /// Admittance of a tool: twist = matrix @ wrench.
@@ -81,7 +81,11 @@ impl PyAdmittance {
             return Err(Failure::option("matrix", shape, "it is 6 x 6, linear part first"));
         }
         let rows = std::array::from_fn(|i| std::array::from_fn(|j| m[(i, j)]));
-        Ok(Self { inner: Admittance::from_rows(rows)? })
+        let inner = Admittance::from_rows(rows).map_err(|error| match error {
+            Error::InvalidOption { value, reason, .. } => Failure::option("matrix", value, reason),
+            other => entries_of("matrix", other),
+        })?;
+        Ok(Self { inner })
     }
 
     #[getter]

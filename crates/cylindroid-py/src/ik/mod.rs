@@ -11,7 +11,8 @@ use pyo3::types::PyDict;
 
 use self::search::Search;
 use crate::arrays::{self, Array, Many, Numbers, Rows};
-use crate::error::{Failure, Result, argument};
+use crate::collision::in_use;
+use crate::error::{Failure, Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::tasks::{PyCollisionAvoidance, PyHalfSpace, PyMotionTask};
 
@@ -22,10 +23,9 @@ fn bodies(
     py: Python<'_>,
     collisions: Option<&PyCollisionAvoidance>,
 ) -> Result<Option<(CollisionModel, f64)>> {
-    let in_use = "the collision model is in use by a call around this one";
     let bodies = |c: &PyCollisionAvoidance| match c.model.try_borrow(py) {
         Ok(model) => Ok((model.inner.clone(), c.gap)),
-        Err(_) => Err(Failure::InUse(in_use.to_owned())),
+        Err(error) => Err(in_use(error)),
     };
     collisions.map(bodies).transpose()
 }
@@ -137,7 +137,7 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
         #[pyo3(from_py_with = argument)] tolerance_orientation: f64,
         #[pyo3(from_py_with = argument)] seed: u64,
-        #[pyo3(from_py_with = argument)] iterations: usize,
+        #[pyo3(from_py_with = count)] iterations: usize,
     ) -> Result<PySolution> {
         let robot = &self.inner;
         let search = Search {
@@ -219,7 +219,7 @@ impl PyMechanism {
         &self,
         py: Python<'py>,
         target: Option<Bound<'py, PyAny>>,
-        #[pyo3(from_py_with = argument)] count: usize,
+        #[pyo3(from_py_with = count)] count: usize,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         q0: Option<Numbers<'py>>,
         tool: Option<Numbers<'py>>,
@@ -234,7 +234,7 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
         #[pyo3(from_py_with = argument)] tolerance_orientation: f64,
         #[pyo3(from_py_with = argument)] seed: u64,
-        #[pyo3(from_py_with = argument)] iterations: usize,
+        #[pyo3(from_py_with = count)] iterations: usize,
     ) -> Result<Array<'py>> {
         let robot = &self.inner;
         let search = Search {

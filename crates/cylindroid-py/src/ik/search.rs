@@ -6,7 +6,7 @@ use cylindroid::ik::{Budget, Goal, IkOptions, Objective};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Many, Numbers};
+use crate::arrays::{Many, Numbers, pose_of};
 use crate::error::{Failure, Result, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -16,9 +16,9 @@ use crate::tasks::{self, PyHalfSpace, PyMotionTask};
 fn poses(target: &Numbers<'_>) -> Result<Many<Pose>> {
     let [_, 4, 4] = *target.shape() else { return Ok(Many::One(target.pose("target")?)) };
     let rows = target.values().as_chunks::<4>().0;
-    let one = |[a, b, c, d]: &[[f64; 4]; 4]| Pose::from_matrix([*a, *b, *c, *d]);
+    let one = |[a, b, c, d]: &[[f64; 4]; 4]| pose_of("target", [*a, *b, *c, *d]);
     let all = rows.as_chunks::<4>().0.iter().map(one);
-    Ok(Many::All(all.collect::<cylindroid::Result<_>>()?))
+    Ok(Many::All(all.collect::<Result<_>>()?))
 }
 
 /// The goal with another target, if it is a frame.

@@ -13,7 +13,7 @@ use cylindroid::inverse::{Inverse, InverseBatch};
 use cylindroid::{Matrix, Method};
 use pyo3::prelude::*;
 
-use crate::arrays::{Many, Numbers};
+use crate::arrays::{Many, Numbers, entries_of};
 use crate::error::Result;
 use crate::threads;
 
@@ -30,7 +30,8 @@ fn by_method(py: Python<'_>, j: &Numbers<'_>, method: Method) -> Result<PyInvers
     let batch = InverseBatch::new(method, m, n)?;
     let jacobians = j.values();
     let is_long = jacobians.len() > InverseBatch::CHUNK * m * n;
-    let inverses = threads::run(py, is_long, || batch.inverses(jacobians))??;
+    let inverses = threads::run(py, is_long, || batch.inverses(jacobians))?
+        .map_err(|error| entries_of("J", error))?;
     Ok(PyInverse::of_stack(method, jacobians.to_vec(), (m, n), inverses))
 }
 
@@ -42,9 +43,10 @@ fn of_each(
 ) -> Result<PyInverse> {
     let matrices = j.matrices("J")?;
     let inner = match &matrices {
-        Many::One(one) => Many::One(f(one)?),
-        Many::All(_) => py.detach(|| matrices.try_map(f))?,
-    };
+        Many::One(one) => f(one).map(Many::One),
+        Many::All(_) => py.detach(|| matrices.try_map(f)),
+    }
+    .map_err(|error| entries_of("J", error))?;
     let stacked = match *j.shape() {
         [.., m, n] => (m, n),
         _ => (0, 0),

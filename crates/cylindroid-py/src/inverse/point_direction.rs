@@ -4,7 +4,7 @@ use cylindroid::inverse::point_direction as all_rates;
 use cylindroid::{Error, Matrix, Vec3};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array, Numbers, entries_of};
 use crate::error::Result;
 use crate::table;
 
@@ -70,7 +70,9 @@ pub(crate) fn point_direction(
 ) -> Result<PyPointDirection> {
     let (point, direction) = (point.entries("point")?, direction.entries("direction")?);
     Error::check_finite("direction", &direction)?;
-    let found =
-        all_rates(&J.twist_columns("J")?, Vec3::from_array(point), Vec3::from_array(direction))?;
+    Error::check_finite("point", &point)?;
+    let twists = J.twist_columns("J")?;
+    let found = all_rates(&twists, Vec3::from_array(point), Vec3::from_array(direction))
+        .map_err(|error| entries_of("J", error))?;
     Ok(PyPointDirection { along: found.along, still: found.still })
 }

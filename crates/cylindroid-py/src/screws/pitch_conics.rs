@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::system::PyScrewSystem;
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Result, argument};
+use crate::error::{Result, argument, count};
 
 /// The pencil of conics in which a three-system meets the pitch quadrics, in the projective plane of
 /// its screws: created by `ScrewSystem.pitch_conics`.
@@ -76,7 +76,7 @@ impl PyPitchConics {
         &self,
         py: Python<'py>,
         #[pyo3(from_py_with = argument)] h: f64,
-        #[pyo3(from_py_with = argument)] count: usize,
+        #[pyo3(from_py_with = count)] count: usize,
     ) -> Result<Vec<Array<'py>>> {
         check(h)?;
         self.inner.points(h, count).iter().map(|curve| three(py, curve)).collect()

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use super::pitch::check_pitch;
 use super::{PyScrew, scale_of, screw_list};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Result, argument};
+use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
 
@@ -316,7 +316,7 @@ impl PyScrewSystem {
     /// -----
     /// Ball 1900, chapter II.
     #[pyo3(signature = (count))]
-    fn pencil(&self, #[pyo3(from_py_with = argument)] count: usize) -> Vec<PyScrew> {
+    fn pencil(&self, #[pyo3(from_py_with = count)] count: usize) -> Vec<PyScrew> {
         screw_list(&self.inner.pencil(count))
     }
 

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use super::{PyMotionResult, PyServo, PyTrajectory};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Result, argument, entry};
+use crate::error::{Result, argument, count, entry};
 use crate::motion::{PyCartesianMove, PyWaypointMove};
 
 /// The goal of a motion.
@@ -108,7 +108,7 @@ impl PyServo {
         py: Python<'py>,
         q: Numbers<'py>,
         target: Numbers<'py>,
-        #[pyo3(from_py_with = argument)] max_restarts: usize,
+        #[pyo3(from_py_with = count)] max_restarts: usize,
     ) -> Result<Option<Array<'py>>> {
         let (q, target) = (q.vector("q")?, target.pose("target")?);
         let servo = &self.lock()?.servo;

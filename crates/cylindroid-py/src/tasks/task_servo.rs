@@ -11,7 +11,7 @@ use super::custom::Raised;
 use super::description::retarget;
 use super::{PyCollisionAvoidance, PyHalfSpace, PyMotionTask, PyTaskReport};
 use crate::arrays::{self, Array, Numbers};
-use crate::collision::{PyCollisionModel, PyDistances};
+use crate::collision::{PyCollisionModel, PyDistances, in_use};
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -109,11 +109,6 @@ struct Running {
     collisions: Option<(Py<PyCollisionModel>, f64)>,
     /// The configuration of the last step, and its reports.
     last: Option<(Vec<f64>, Vec<PyTaskReport>)>,
-}
-
-/// The error for a collision model that a step holds.
-fn in_use<E>(_: E) -> Failure {
-    Failure::InUse("the collision model is in use by a call around this one".to_owned())
 }
 
 impl Running {

@@ -25,6 +25,7 @@ use crate::linalg::{Matrix, Metric, dot};
 use crate::model::{Dimension, Elasticity, FrameId};
 use crate::screws::{Eigenscrews, eigenscrews};
 use crate::spatial::{Pose, Twist, Vec3};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// The stiffness of a mechanism at its reference frame.
 ///
@@ -203,12 +204,12 @@ impl Stiffness {
     /// The deflection under an external wrench at the origin of the reference frame, world axes.
     ///
     /// # Errors
-    /// A wrench of the wrong size, or with non-finite entries.
+    /// A wrench of the wrong size, with non-finite entries or with magnitudes beyond 1e120.
     pub fn deflection(&self, wrench: &[f64]) -> Result<Deflection> {
         let elastic = &self.elastic;
         let (d, n) = (elastic.constraint.object(), elastic.stiffness.len());
         Error::check_len("wrench", d, wrench.len())?;
-        Error::check_finite("wrench", wrench)?;
+        Error::check_within("wrench", wrench, MAX_MAGNITUDE)?;
         let mut unbalanced = vec![0.0; d];
         for j in 0..self.free.cols() {
             let mut dual = self.free.column(j).to_vec();

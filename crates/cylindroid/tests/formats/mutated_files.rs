@@ -1,11 +1,15 @@
 //! Real files, mutated at random with fixed seeds: every reader gives a model, or an error; what was
 //! read can be used.
 //!
-//! `CYLINDROID_FUZZ` sets the number of mutations of each format; `cargo xtask fuzz` runs many.
+//! Without `CYLINDROID_FUZZ_SECONDS` a few mutations of each format; with it as many as the time
+//! allows, from `CYLINDROID_FUZZ_SEED` on. `cargo xtask fuzz` sets both. A file that panics is
+//! written to the folder of temporary files of the tests; once mended, it belongs to
+//! `tests/data/findings`, whose files are read by every run.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use cylindroid::collision::{CollisionModel, CollisionOptions, distance};
 use cylindroid::model::Geometry;
@@ -14,7 +18,7 @@ use cylindroid::{Mechanism, Pose, Vec3, load_file};
 
 use crate::robots;
 
-/// Mutations of each format without `CYLINDROID_FUZZ`.
+/// Mutations of each format without `CYLINDROID_FUZZ_SECONDS`.
 const FEW: u64 = 2000;
 
 /// Larger files (bytes) are not mutated: they take longer and have the same parts.
@@ -146,16 +150,28 @@ fn files(folder: &Path, extensions: &[&str], found: &mut Vec<PathBuf>) {
     }
 }
 
+/// The seeds of a run.
+fn seeds() -> impl Iterator<Item = u64> {
+    let number = |name: &str| std::env::var(name).ok().map(|text| text.parse::<u64>().unwrap());
+    let seconds = number("CYLINDROID_FUZZ_SECONDS");
+    let first = number("CYLINDROID_FUZZ_SEED").unwrap_or(0);
+    let start = Instant::now();
+    (first..).take_while(move |seed| match seconds {
+        None => seed - first < FEW,
+        Some(seconds) => start.elapsed() < Duration::from_secs(seconds),
+    })
+}
+
 /// Reads mutations of the files below the folders with `read`, as files of the same extension.
 fn feed(folders: &[PathBuf], extensions: &[&str], read: impl Fn(&Path) -> bool) {
     let mut sources = Vec::new();
     folders.iter().for_each(|folder| files(folder, extensions, &mut sources));
     assert!(sources.len() >= 3, "{} files in {folders:?}", sources.len());
     let texts: Vec<Vec<u8>> = sources.iter().map(|path| fs::read(path).unwrap()).collect();
-    let rounds = std::env::var("CYLINDROID_FUZZ").map_or(FEW, |n| n.parse().unwrap());
     let folder = tempfile::tempdir().unwrap();
-    let mut accepted = 0;
-    for seed in 0..rounds {
+    let (mut accepted, mut rounds) = (0, 0);
+    for seed in seeds() {
+        rounds += 1;
         let mut random = Random(seed);
         let (i, k) = (random.below(sources.len()), random.below(sources.len()));
         let mut bytes = texts[i].clone();
@@ -165,9 +181,16 @@ fn feed(folders: &[PathBuf], extensions: &[&str], read: impl Fn(&Path) -> bool) 
         fs::write(&path, &bytes).unwrap();
         match catch_unwind(AssertUnwindSafe(|| read(&path))) {
             Ok(is_read) => accepted += u64::from(is_read),
-            Err(_) => panic!("seed {seed}, {}, panics", sources[i].display()),
+            Err(_) => {
+                let finding =
+                    format!("finding-{seed}-{}", sources[i].file_name().unwrap().display());
+                let finding = Path::new(env!("CARGO_TARGET_TMPDIR")).join(finding);
+                fs::write(&finding, &bytes).unwrap();
+                panic!("seed {seed} of {}: {} panics", sources[i].display(), finding.display());
+            }
         }
     }
+    println!("{rounds} mutations of {extensions:?}, {accepted} were read");
     // Both ways were taken.
     assert!(accepted > rounds / 100 && accepted < rounds, "{accepted} of {rounds} were read");
 }
@@ -204,6 +227,15 @@ fn exercise(robot: &Mechanism) {
 
 fn own(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)
+}
+
+/// Files that made a reader or a solver fail once.
+#[test]
+fn findings_stay_mended() {
+    let mut sources = Vec::new();
+    files(&own("tests/data/findings"), &["toml", "urdf", "sdf", "xml"], &mut sources);
+    let read: Vec<bool> = sources.iter().map(|path| model(path)).collect();
+    assert!(read.contains(&true) && read.contains(&false), "{sources:?} {read:?}");
 }
 
 #[test]

@@ -181,6 +181,48 @@ fn rounds_as_single_calls() {
     }
 }
 
+/// A million rows: with 1, 2 and 8 threads the same to the bit, and what single calls give.
+#[test]
+fn a_million_rows_are_those_of_single_calls() {
+    let of_arm = |name: &&str| {
+        let robot = catalogue::load(name).unwrap();
+        Chain::new(&robot, robot.tool()).n() == robot.n() && robot.n() > 0
+    };
+    let names: Vec<&str> = catalogue::names().iter().copied().filter(of_arm).collect();
+    let count = 1_000_000_usize.div_ceil(names.len());
+    for name in &names {
+        let robot = catalogue::load(name).unwrap();
+        let (n, of) = (robot.n(), robot.tool());
+        let (batch, mut chain) = (KinematicsBatch::new(&robot, of), Chain::new(&robot, of));
+        let q = draw(&robot, count, 14);
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let (mut poses, mut jacobians) = (vec![0.0; 16 * count], vec![0.0; 6 * n * count]);
+            let reference = ReferenceFrame::LocalWorldAligned;
+            pool.install(|| {
+                batch.poses_and_jacobians_into(&q, reference, &mut poses, &mut jacobians).unwrap();
+            });
+            (poses, jacobians)
+        };
+        let (poses, jacobians) = with(1);
+        for threads in [2, 8] {
+            let other = with(threads);
+            assert!((&poses, &jacobians) == (&other.0, &other.1), "{name} {threads}");
+        }
+        let tolerance = 32.0 * f64::EPSILON * (1.0 + robot.reach());
+        let mut local = Matrix::zeros(6, n);
+        for (i, q) in q.chunks(n).enumerate() {
+            let pose = chain.set(q).to_matrix();
+            assert_close(name, &poses[i * 16..][..16], pose.as_flattened(), tolerance);
+            chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut local);
+            let own = &jacobians[i * 6 * n..][..6 * n];
+            let difference =
+                (0..6 * n).map(|k| (own[k] - local[(k / n, k % n)]).abs()).fold(0.0, f64::max);
+            assert!(difference <= tolerance, "{name} {i}: {difference:e}");
+        }
+    }
+}
+
 /// Bit for bit the same with one thread or three, at any place in the batch.
 #[test]
 fn does_not_depend_on_threads_or_places() {

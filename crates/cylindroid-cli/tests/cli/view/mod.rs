@@ -3,6 +3,7 @@
 #![allow(clippy::panic)] // helpers say what they found
 
 mod choices;
+mod fuzz;
 mod load;
 mod motion;
 mod obstacles;
@@ -109,7 +110,7 @@ impl Client {
     }
 
     /// The next message that is so.
-    pub(crate) fn until(&mut self, is_so: impl Fn(&Value) -> bool) -> Value {
+    pub(crate) fn until(&mut self, mut is_so: impl FnMut(&Value) -> bool) -> Value {
         let begin = Instant::now();
         let mut last = Value::Null;
         while begin.elapsed() < WAIT {

@@ -69,7 +69,10 @@ pub fn find_reachable_configuration(
         initial_guess: Some(q.to_vec()),
         fixed: (0..mechanism.n()).filter(|c| !free.contains(c)).collect(),
         nearest: true,
-        budget: Budget { iterations: ITERATIONS_PER_RESTART * max_restarts.max(1), time: None },
+        budget: Budget {
+            iterations: ITERATIONS_PER_RESTART.saturating_mul(max_restarts.max(1)),
+            time: None,
+        },
         length: Some(options.length),
         ..IkOptions::default()
     };
