@@ -10,6 +10,7 @@ mod fuzz;
 mod instructions;
 mod layers;
 mod models;
+mod mutants;
 mod python;
 mod python_names;
 mod shell;
@@ -58,6 +59,9 @@ cargo xtask <task>
   fuzz [--minutes M] [--seed N]
             for 10 minutes: random mutations of files of every format, messages of the viewer,
             command lines and calls from Python, and steps of servos (release build)
+  mutants [--sample N] [--seed S] [--minutes M]
+            changes one operator, sign, number or function of the mathematics at a time, and prints
+            which of 40 changes the tests catch, with an interval
   bench-peers [--quick] [--only NAMES]
             installs other libraries in target/bench-peers (Python, PyPI, crates.io, Debian's
             packages, g++), compares with them and writes docs/benchmarks.* (--quick: a
@@ -109,6 +113,7 @@ fn run() -> Result<()> {
             steps::limits(argument(0), argument(1))
         }
         Some("fuzz") => fuzz::task(&std::env::args().skip(2).collect::<Vec<String>>()),
+        Some("mutants") => mutants::task(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("bench-peers") => {
             bench_peers::compare(&std::env::args().skip(2).collect::<Vec<String>>())
         }
