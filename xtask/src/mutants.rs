@@ -8,6 +8,7 @@
 //! Why so   all mutants are compiled once into a copy of the library, each behind a test of the
 //!          variable CYLINDROID_MUTANT; one build for each mutant would take a hundred times as long
 
+mod mutant;
 mod run;
 mod sites;
 
@@ -16,6 +17,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
+use self::mutant::Mutant;
 use crate::models;
 use crate::shell::{cargo, root, run as shell_run};
 
@@ -33,18 +35,6 @@ const FOLDERS: [&str; 11] = [
     "screws",
     "spatial",
 ];
-
-/// A change of a file.
-#[derive(Debug, Clone)]
-struct Mutant {
-    /// Relative to the library's `src`.
-    file: String,
-    line: usize,
-    /// Bytes of the file.
-    range: std::ops::Range<usize>,
-    old: String,
-    new: String,
-}
 
 /// `--sample N` mutants (40), drawn with `--seed S` (1), within `--minutes M`.
 ///

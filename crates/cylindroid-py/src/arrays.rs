@@ -5,6 +5,7 @@
 
 use cylindroid::linalg::Metric;
 use cylindroid::model::Mechanism;
+use cylindroid::tolerance::MAX_MAGNITUDE;
 use cylindroid::{Error, Matrix, Pose, Twist, Wrench};
 use numpy::{
     Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
@@ -93,6 +94,13 @@ impl Numbers<'_> {
         })
     }
 
+    /// Six entries whose products are finite.
+    fn moderate(&self, name: &'static str) -> Result<[f64; 6]> {
+        let entries = self.entries(name)?;
+        Error::check_within(name, &entries, MAX_MAGNITUDE)?;
+        Ok(entries)
+    }
+
     /// A matrix.
     pub(crate) fn matrix(&self, name: &'static str) -> Result<Matrix> {
         match *self.shape() {
@@ -110,12 +118,12 @@ impl Numbers<'_> {
 
     /// A twist, linear part first.
     pub(crate) fn twist(&self, name: &'static str) -> Result<Twist> {
-        Ok(Twist::from_array(self.entries(name)?))
+        Ok(Twist::from_array(self.moderate(name)?))
     }
 
     /// A wrench, force first.
     pub(crate) fn wrench(&self, name: &'static str) -> Result<Wrench> {
-        Ok(Wrench::from_array(self.entries(name)?))
+        Ok(Wrench::from_array(self.moderate(name)?))
     }
 
     /// A metric from a matrix, or from its diagonal.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
-use super::Mutant;
+use super::mutant::Mutant;
 use crate::shell::{cargo, root};
 
 /// Test programs of the library, those of the mathematics first.

@@ -9,7 +9,7 @@ use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 use syn::{BinOp, Expr, Lit, UnOp};
 
-use super::Mutant;
+use super::mutant::Mutant;
 
 /// The mutants of the files below a folder of `source`.
 pub(super) fn find(source: &Path, folder: &str, found: &mut Vec<Mutant>) -> Result<()> {
