@@ -9,6 +9,7 @@ pub(crate) mod inverses;
 mod move_to;
 mod screws;
 mod shared;
+mod sweep;
 mod tasks;
 mod view;
 pub(crate) use closed::{
@@ -23,6 +24,7 @@ pub(crate) use move_to::{
 
 pub(crate) use screws::ScrewsArgs;
 pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs};
+pub(crate) use sweep::SweepArgs;
 pub(crate) use tasks::{FrameTaskArg, TasksArgs};
 pub(crate) use view::ViewArgs;
 
@@ -103,6 +105,9 @@ pub(crate) enum Command {
     /// Force closure of the contacts on an object, and grasp quality
     #[command(long_about = closed::GRASP, after_long_help = closed::GRASP_EXAMPLES)]
     Grasp(Box<GraspArgs>),
+    /// Quantities of millions of configurations: samples, grids or files, into Parquet
+    #[command(long_about = sweep::ABOUT, after_long_help = sweep::EXAMPLES)]
+    Sweep(Box<SweepArgs>),
     /// The web viewer: display a model, drag its tool or object, and monitor its measures
     #[command(long_about = view::ABOUT, after_long_help = view::EXAMPLES)]
     View(Box<ViewArgs>),

@@ -1,9 +1,10 @@
-//! Files of rows of numbers: CSV, or JSON lists of lists.
+//! Files of rows of numbers: CSV, JSON lists of lists, and Parquet for configurations.
 
 use std::fmt;
 use std::path::Path;
 
 use cylindroid::model::read_regular_file;
+use cylindroid::sweep::parquet_configurations;
 use cylindroid::{Error, Matrix, Result};
 
 /// The largest file of numbers (bytes): 128 MiB, a million configurations of seven coordinates.
@@ -59,6 +60,9 @@ fn table(path: &Path) -> Result<Table> {
 /// of the coordinates are read, `name` or as in a motion of `move` `q.name`, and others are not;
 /// otherwise, a row has a number for each.
 pub(crate) fn configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    if path.extension().is_some_and(|e| e == "parquet") {
+        return parquet_configurations(path, names);
+    }
     let table = table(path)?;
     let places: Vec<usize> = match &table.names {
         None => (0..names.len()).collect(),

@@ -20,6 +20,7 @@ mod parameter_tables;
 mod screws;
 mod servo;
 mod spatial;
+mod sweep;
 mod table;
 mod tasks;
 mod threads;
@@ -94,6 +95,8 @@ mod _core {
         bracket, coadjoint, error_to, exp, exp_derivative, log, log_derivative,
         rotation_exp_derivative, rotation_log_derivative, velocity_conversion,
     };
+    #[pymodule_export]
+    use crate::sweep::{PySweepSummary, sweep};
     #[pymodule_export]
     use crate::tasks::{
         PyCenterOfMassTask, PyCollisionAvoidance, PyCustomTask, PyFrameTask, PyGazeTask,

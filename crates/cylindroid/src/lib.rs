@@ -64,6 +64,8 @@ pub mod model;
 mod scalar;
 pub mod screws;
 pub mod spatial;
+#[cfg(feature = "sweep")]
+pub mod sweep;
 mod task;
 pub mod tolerance;
 

@@ -11,6 +11,7 @@ mod models;
 pub(crate) mod move_to;
 pub(crate) mod screws;
 pub(crate) mod shared;
+mod sweep;
 mod target;
 mod view;
 
@@ -37,6 +38,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Manipulability(args) => closed::manipulability::run(args, style, out),
         Command::Statics(args) => closed::statics::run(args, style, out),
         Command::Grasp(args) => closed::grasp::run(args, style, out),
+        Command::Sweep(args) => sweep::run(args, style, out),
         Command::View(args) => view::run(args, style, out),
     }
 }

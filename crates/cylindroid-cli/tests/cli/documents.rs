@@ -170,6 +170,11 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["five-bar", "--actuated", "q1,q2,q3,q4,q5", "--wrench", "3,-1,0.2"],
         ],
         "view" => vec![vec!["panda", "--check"]],
+        "sweep" => {
+            const FILE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/documents.csv");
+            let some = ["youbot", "--samples", "50"];
+            vec![with(&some, &["--quantities", "pose,gibson_hunt"]), with(&some, &["--out", FILE])]
+        }
         "grasp" => vec![vec![GRASP, "--torsion", "0.01"]],
         _ => vec![vec![]],
     };

@@ -17,6 +17,7 @@ mod pictures;
 mod screws;
 mod shape;
 mod statics;
+mod sweep;
 mod tasks;
 mod view;
 mod xacro;

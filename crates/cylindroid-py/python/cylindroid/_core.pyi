@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, final, overload
 
 import numpy as np
@@ -83,6 +84,7 @@ __all__ = [
     "Spectrum",
     "Stall",
     "Stiffness",
+    "SweepSummary",
     "TaskReport",
     "TaskServo",
     "TimeLaw",
@@ -129,6 +131,7 @@ __all__ = [
     "screw_to",
     "secondary_tasks",
     "selectively_damped",
+    "sweep",
     "transversals",
     "velocity_conversion",
     "wrench_pitch_form",
@@ -1763,6 +1766,19 @@ class HalfSpace:
     def normal(self) -> tuple[float, float, float]: ...
 
 @final
+class SweepSummary:
+    @property
+    def folder(self) -> Path: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def computed(self) -> int: ...
+    @property
+    def parts(self) -> int: ...
+    @property
+    def bytes(self) -> int: ...
+
+@final
 class TaskReport:
     @property
     def name(self) -> str: ...
@@ -1983,6 +1999,23 @@ def secondary_tasks() -> list[dict[str, Any]]: ...
 def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...
+def sweep(
+    robot: Mechanism,
+    samples: int | None = None,
+    seed: int = 0,
+    over: dict[str, tuple[float, float, int]] | None = None,
+    q: ArrayLike | None = None,
+    configurations: Any = None,
+    quantities: Sequence[str] | None = None,
+    frame: str | None = None,
+    tool: ArrayLike | None = None,
+    task: str | None = None,
+    metric: str = "unit",
+    length: float | None = None,
+    out: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+    threads: int | None = None,
+) -> Any: ...
 def transversals(
     lines: ArrayLike,
     length: float | None = None,

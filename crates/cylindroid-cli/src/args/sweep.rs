@@ -1,0 +1,170 @@
+//! The arguments of `sweep`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use cylindroid::sweep::{Axis, VelocityMetric};
+
+use super::FrameArgs;
+use crate::values::Joints;
+
+pub(crate) const ABOUT: &str = "\
+Quantities of millions of configurations: samples within the limits, grids, or a file
+
+Samples are points of a scrambled Sobol' sequence: sample i depends on the seed and i alone. Without \
+--out, statistics of each column are printed. With --out, the rows are written into a folder of \
+Parquet files, which can be interrupted and resumed: the files are the same to the byte whatever the \
+number of threads and interruptions. Column names are those of coordinates and quantities; units \
+are in the manifest.";
+
+pub(crate) const EXAMPLES: &str = "\
+Examples:
+  cylindroid sweep panda --samples 1e4 --quantities yoshikawa,condition,limit_distance
+  cylindroid sweep panda --samples 1e5 --quantities pose,jacobian,singular_values --out map
+  cylindroid sweep ur5e --over shoulder_lift_joint=-3:0:61 --over elbow_joint=0:3:61 --task x,y,z
+  cylindroid sweep stewart --configurations configurations.csv --quantities pose,measures
+
+Quantities:
+  pose                     position and unit quaternion of the frame
+  jacobian                 Jacobian at the frame's origin, world axes
+  singular_values          of the Jacobian, linear rows over the characteristic length
+  smallest_singular_value  the last of them
+  condition                the largest over the smallest of them
+  yoshikawa                sqrt(det J J^T), in --metric
+  limit_distance           smallest distance to a position limit, negative outside
+  gibson_hunt              class and principal pitches of the screw system
+  measures                 mobility, distances to singularities, kinematic efficiencies, in --metric
+
+For closed chains: pose, limit_distance and measures, of --configurations. Exit code 130 after an \
+interrupt.";
+
+#[derive(Debug, Args)]
+pub(crate) struct SweepArgs {
+    /// Model file or catalogue name
+    pub(crate) model: String,
+
+    /// Number of samples within the position limits, e.g. 1e6; joints without limits rotate
+    /// through -pi to pi
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    #[arg(required_unless_present_any = ["over", "configurations"])]
+    pub(crate) samples: Option<Count>,
+
+    /// Selects one of the sample sequences
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "samples")]
+    #[arg(allow_negative_numbers = true)]
+    pub(crate) seed: u64,
+
+    /// An axis of a grid [rad or m]: a coordinate, its first and last value and the number of
+    /// values; repeat for further axes, of which the last changes fastest
+    #[arg(long, value_name = "NAME=A:B:N", conflicts_with = "samples", allow_hyphen_values = true)]
+    pub(crate) over: Vec<AxisArg>,
+
+    /// The other coordinates of a grid [rad or m], as for other commands
+    #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
+    #[arg(requires = "over")]
+    pub(crate) q: Joints,
+
+    /// A .csv, .json or .parquet file with a configuration in each row [rad or m]. Columns with
+    /// names may be in any order; others than those of the coordinates are ignored
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "over"])]
+    pub(crate) configurations: Option<PathBuf>,
+
+    /// The quantities of each configuration, see below
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    #[arg(default_value = "pose,yoshikawa,smallest_singular_value,limit_distance")]
+    pub(crate) quantities: Vec<String>,
+
+    #[command(flatten)]
+    pub(crate) frame: FrameArgs,
+
+    /// Components of the twist that the measures of the Jacobian see, world axes: x,y,z,rx,ry,rz
+    /// [default: all; in the plane x,y,rz]
+    #[arg(long, value_name = "COMPONENTS", value_delimiter = ',')]
+    pub(crate) task: Vec<String>,
+
+    /// Metric of yoshikawa and measures: `unit` (m and rad, unscaled), `length` (lengths over the
+    /// characteristic length), `limits` (as `length`, and joint velocities over their limits)
+    #[arg(long, value_name = "NAME", default_value = "unit")]
+    pub(crate) metric: SweepMetricName,
+
+    /// Characteristic length [m] [default: that of the model, see `info`]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    pub(crate) length: Option<f64>,
+
+    /// Folder of the Parquet files, or a file that ends in .csv
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Continue a folder that was interrupted; finished parts are verified by their checksums
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
+
+    /// Rows of a file: the unit of work, which each thread has once in memory [default: 65536]
+    #[arg(long, value_name = "N", requires = "out", allow_hyphen_values = true)]
+    pub(crate) part_rows: Option<Count>,
+
+    /// Number of threads [default: that of the processor]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SweepMetricName {
+    /// Metres and radians, unscaled
+    Unit,
+    /// Lengths over the characteristic length
+    Length,
+    /// As `length`, and joint velocities over their limits
+    Limits,
+}
+
+impl SweepMetricName {
+    pub(crate) const fn metric(self) -> VelocityMetric {
+        match self {
+            Self::Unit => VelocityMetric::Unit,
+            Self::Length => VelocityMetric::Length,
+            Self::Limits => VelocityMetric::Limits,
+        }
+    }
+}
+
+/// A whole number, `1e7` too.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Count(pub(crate) u64);
+
+impl FromStr for Count {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let whole = |x: f64| (x >= 0.0 && x < 1e15 && x.fract() == 0.0).then_some(x);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number"
+        )]
+        let scientific = || text.parse::<f64>().ok().and_then(whole).map(|x| x as u64);
+        let count = text.parse().ok().or_else(scientific);
+        count.map(Self).ok_or_else(|| format!("'{text}' is not a whole number such as 1000 or 1e7"))
+    }
+}
+
+/// `NAME=A:B:N`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct AxisArg(pub(crate) Axis);
+
+impl FromStr for AxisArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("'{text}' is not of the form name=first:last:number");
+        let (name, values) = text.rsplit_once('=').ok_or_else(wrong)?;
+        let [from, to, count] =
+            <[&str; 3]>::try_from(values.split(':').collect::<Vec<_>>()).map_err(|_| wrong())?;
+        let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+        let count = count.trim().parse::<Count>()?.0;
+        let name = name.trim().to_owned();
+        Ok(Self(Axis { name, from: number(from)?, to: number(to)?, count }))
+    }
+}

@@ -1,0 +1,76 @@
+//! A small sweep as one CSV file.
+
+use std::path::Path;
+
+use cylindroid::sweep::{Progress, Sweep, Values};
+use cylindroid::{Error, Result};
+
+/// Rows of a CSV file at most.
+const MOST: u64 = 1_000_000;
+/// Rows computed at once.
+const BLOCK: u64 = 4096;
+
+/// Writes all rows under a temporary name, renames, and returns the size (bytes); `None` if
+/// `observe` stopped it.
+pub(super) fn write(
+    sweep: &Sweep,
+    path: &Path,
+    observe: impl Fn(&Progress) -> bool,
+) -> Result<Option<u64>> {
+    let rows = sweep.rows();
+    if rows > MOST {
+        return Err(Error::InvalidOption {
+            option: "--out",
+            value: path.display().to_string(),
+            reason: format!("{rows} rows are too many for CSV ({MOST}); name a folder for Parquet"),
+        });
+    }
+    let cannot = |message: String| Error::Io { path: path.to_owned(), action: "write", message };
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".tmp");
+    let temporary = path.with_file_name(name);
+    let finished = lines(sweep, &temporary, observe, &cannot);
+    match finished {
+        Ok(true) => {
+            std::fs::rename(&temporary, path).map_err(|e| cannot(e.to_string()))?;
+            let size = std::fs::metadata(path).map_err(|e| cannot(e.to_string()))?.len();
+            Ok(Some(size))
+        }
+        stopped => {
+            let _ = std::fs::remove_file(&temporary);
+            stopped.map(|_| None)
+        }
+    }
+}
+
+fn lines(
+    sweep: &Sweep,
+    path: &Path,
+    observe: impl Fn(&Progress) -> bool,
+    cannot: &dyn Fn(String) -> Error,
+) -> Result<bool> {
+    let failed = |e: csv::Error| cannot(e.to_string());
+    let rows = sweep.rows();
+    let mut writer = csv::Writer::from_path(path).map_err(failed)?;
+    writer.write_record(sweep.columns().iter().map(|c| &c.name)).map_err(failed)?;
+    let mut start = 0;
+    while start < rows {
+        if !observe(&Progress { rows, done: start, computed: start }) {
+            return Ok(false);
+        }
+        let end = rows.min(start + BLOCK);
+        let table = sweep.table(start..end)?;
+        for i in 0..table.rows() {
+            let cell = |values: &Values| match values {
+                Values::Numbers(numbers) => numbers[i].to_string(),
+                Values::Counts(counts) => counts[i].to_string(),
+                Values::Texts(texts) => texts[i].to_owned(),
+                _ => String::new(),
+            };
+            writer.write_record(table.values.iter().map(cell)).map_err(failed)?;
+        }
+        start = end;
+    }
+    writer.flush().map_err(|e| cannot(e.to_string()))?;
+    Ok(true)
+}

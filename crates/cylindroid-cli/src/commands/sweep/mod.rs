@@ -1,0 +1,138 @@
+//! `sweep`: quantities of millions of configurations.
+
+mod csv_file;
+mod interrupt;
+mod report;
+
+use std::cell::Cell;
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use cylindroid::sweep::{Progress, Quantity, Source, Sweep, SweepOptions, WriteOptions};
+use cylindroid::{Error, Mechanism};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use self::interrupt::Interrupt;
+use self::report::{Head, Outcome};
+use crate::args::SweepArgs;
+use crate::commands::shared::{Style, end_effector};
+use crate::number_file;
+use crate::output;
+
+/// Exit code after Ctrl-C, as of a shell: 128 and the number of the signal.
+const INTERRUPTED: u8 = 130;
+
+pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let robot = cylindroid::load(&args.model)?;
+    let source = source(&robot, args)?;
+    let named = args.frame.frame.is_some() || args.frame.tool.is_some();
+    let of_chain = robot.is_closed().then(|| robot.reference().into());
+    let frame = if named {
+        end_effector(&robot, &args.frame)?
+    } else {
+        of_chain.unwrap_or(robot.tool().into())
+    };
+    let quantities =
+        args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?;
+    let options = SweepOptions {
+        source: source.clone(),
+        quantities,
+        end_effector: Some(frame),
+        task: args.task.clone(),
+        metric: args.metric.metric(),
+        length: args.length,
+        part_rows: args.part_rows.map_or(Sweep::PART_ROWS, |count| count.0),
+    };
+    let sweep = Sweep::new(&robot, options)?;
+    let head = Head::of(&robot, &sweep, &source, args, frame);
+    let interrupt = Interrupt::new();
+    let started = Instant::now();
+    let bar = Bar::new(sweep.rows());
+    let observe = |progress: &Progress| {
+        bar.show(progress);
+        !interrupt.came()
+    };
+    let outcome = match &args.out {
+        None => sweep.statistics(args.threads, observe)?.map(Outcome::Statistics),
+        Some(path) if is_csv(path) => {
+            if args.resume {
+                return Err(Error::InvalidOption {
+                    option: "--resume",
+                    value: path.display().to_string(),
+                    reason: "a .csv file is written as a whole; name a folder".to_owned(),
+                }
+                .into());
+            }
+            csv_file::write(&sweep, path, observe)?.map(|bytes| Outcome::File { path, bytes })
+        }
+        Some(folder) => {
+            let options = WriteOptions { threads: args.threads, resume: args.resume };
+            let summary = sweep.write(folder, &options, observe)?;
+            Some(Outcome::Folder { folder, summary })
+        }
+    };
+    drop(bar);
+    let seconds = started.elapsed().as_secs_f64();
+    let Some(outcome) = outcome else {
+        writeln!(std::io::stderr(), "interrupted")?;
+        return Ok(ExitCode::from(INTERRUPTED));
+    };
+    match style {
+        Style::Json => output::json(out, &outcome.json(&head, seconds))?,
+        Style::Table => outcome.print(&head, out)?,
+    }
+    Ok(if outcome.complete() { ExitCode::SUCCESS } else { ExitCode::from(INTERRUPTED) })
+}
+
+fn is_csv(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
+}
+
+fn source(robot: &Mechanism, args: &SweepArgs) -> cylindroid::Result<Source> {
+    if let Some(path) = &args.configurations {
+        let names = output::joint_names(robot);
+        return Ok(Source::Configurations(number_file::configurations(path, &names)?));
+    }
+    match args.samples {
+        Some(count) => Ok(Source::Samples { count: count.0, seed: args.seed }),
+        None => Ok(Source::Grid {
+            axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
+            rest: args.q.configuration(robot, false)?,
+        }),
+    }
+}
+
+/// Progress on stderr, if stderr is a terminal: rate and time left.
+struct Bar {
+    bar: ProgressBar,
+    computed: Cell<u64>,
+}
+
+impl Bar {
+    fn new(rows: u64) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::stderr());
+        let template = "{wide_bar} {human_pos} of {human_len} rows, {per_sec}, {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        Self { bar, computed: Cell::new(0) }
+    }
+
+    fn show(&self, progress: &Progress) {
+        // Rows of earlier runs do not count for the rate.
+        let before = progress.done - progress.computed;
+        if self.computed.replace(progress.computed) == 0 && progress.computed == 0 {
+            self.bar.set_position(before);
+            self.bar.reset_eta();
+        }
+        self.bar.set_position(progress.done);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,153 @@
+//! Sweeps: statistics, files, killed and interrupted processes.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::{json, refused, text};
+
+/// A column of statistics.
+fn column<'a>(report: &'a Value, name: &str) -> &'a Value {
+    report["columns"].as_array().unwrap().iter().find(|c| c["name"] == name).unwrap()
+}
+
+#[test]
+fn statistics_of_samples_and_grids() {
+    let sweep = ["sweep", "panda", "--samples", "2e3", "--quantities", "pose,limit_distance"];
+    let report = json(&sweep, 0);
+    assert_eq!((&report["rows"], &report["frame"]), (&2000.into(), &"hand_tcp".into()));
+    let distance = column(&report, "limit_distance");
+    assert!(distance["smallest"].as_f64().unwrap() > 0.0, "samples are within the limits");
+    let joint = column(&report, "panda_joint4");
+    assert!((joint["mean"].as_f64().unwrap() - -1.5708).abs() < 1e-3, "{joint}");
+    assert!(text(&sweep).contains("panda_joint4"));
+
+    let grid = ["sweep", "ur5e", "--over", "elbow_joint=-1:1:3", "--over", "wrist_1_joint=0:1:2"];
+    let report = json(&grid, 0);
+    assert_eq!(report["rows"], 6);
+    assert_eq!(report["configurations"], "grid of 3 x 2");
+    assert_eq!(column(&report, "elbow_joint")["mean"], 0.0);
+
+    let classes = ["sweep", "youbot", "--samples", "100", "--quantities", "gibson_hunt"];
+    let names = column(&json(&classes, 0), "gibson_hunt")["names"].clone();
+    let count: u64 = names.as_array().unwrap().iter().map(|n| n["count"].as_u64().unwrap()).sum();
+    assert_eq!(count, 100);
+}
+
+/// Columns by the names of the joints, in any order, in CSV and Parquet.
+#[test]
+fn configurations_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (parts, turned) = (at("parts"), at("turned.csv"));
+    let sweep = ["sweep", "youbot", "--samples", "300", "--quantities", "pose"];
+    text(&[&sweep[..], &["--out", &parts]].concat());
+    let part = format!("{parts}/part-000000.parquet");
+    let csv = at("samples.csv");
+    text(&[&sweep[..], &["--out", &csv]].concat());
+    // The columns of a CSV file from the last to the first.
+    let lines = fs::read_to_string(&csv).unwrap();
+    let turn = |line: &str| line.split(',').rev().collect::<Vec<_>>().join(",");
+    fs::write(&turned, lines.lines().map(turn).collect::<Vec<_>>().join("\n")).unwrap();
+    let of = |file: &str| {
+        let sweep = ["sweep", "youbot", "--configurations", file, "--quantities", "pose"];
+        json(&sweep, 0)["columns"].clone()
+    };
+    let expected = json(&sweep, 0)["columns"].clone();
+    assert_eq!(of(&part), expected);
+    assert_eq!(of(&turned), expected);
+    let found = ["manipulability", "youbot", "--configurations", &part];
+    assert_eq!(json(&found, 0)["rows"].as_array().unwrap().len(), 300);
+    let message = refused(&["sweep", "panda", "--configurations", &part]);
+    assert!(message.contains("no column 'panda_joint1' among index, arm_joint_1"), "{message}");
+}
+
+fn start(folder: &Path, resume: bool) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_cylindroid"));
+    command
+        .args(["sweep", "youbot", "--samples", "60000", "--part-rows", "500", "--threads", "2"])
+        .args(["--quantities", "pose,yoshikawa,gibson_hunt", "--out"])
+        .arg(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    if resume {
+        command.arg("--resume");
+    }
+    command
+}
+
+/// The manifest, which has the checksums of all parts.
+fn manifest(folder: &Path) -> Value {
+    serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap()
+}
+
+/// Killed ten times, at moments that a generator chooses: the parts of an uninterrupted run.
+#[test]
+fn killed_processes_are_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, own) = (folder.path().join("whole"), folder.path().join("own"));
+    assert!(start(&whole, false).status().unwrap().success());
+    let mut random = 12_345_u64;
+    for run in 0..10 {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let resume = own.join("manifest.json").exists();
+        assert!(resume || run == 0 || !own.join("part-000000.parquet").exists());
+        let mut child = start(&own, resume).spawn().unwrap();
+        sleep(Duration::from_millis(20 + (random >> 33) % 300));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    assert!(start(&own, own.join("manifest.json").exists()).status().unwrap().success());
+    let (a, b) = (manifest(&own), manifest(&whole));
+    assert_eq!(a["complete"], true);
+    assert_eq!(a["parts"].as_array().unwrap().len(), 120);
+    assert_eq!(a, b);
+    for part in a["parts"].as_array().unwrap() {
+        let name = part["file"].as_str().unwrap();
+        assert!(fs::read(own.join(name)).unwrap() == fs::read(whole.join(name)).unwrap());
+    }
+}
+
+/// Ctrl-C ends a run in order.
+#[cfg(unix)]
+#[test]
+fn interrupted_processes_are_resumed() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    let mut child = start(&own, false).spawn().unwrap();
+    while !own.join("part-000003.parquet").exists() {
+        sleep(Duration::from_millis(1));
+    }
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let code = child.wait().unwrap().code();
+    let parts = manifest(&own)["parts"].as_array().unwrap().len();
+    assert!(code == Some(130) && (4..120).contains(&parts), "{code:?}, {parts} parts");
+    assert!(start(&own, true).status().unwrap().success());
+    assert_eq!(manifest(&own)["complete"], true);
+}
+
+#[test]
+fn what_cannot_be_swept_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let some = ["sweep", "panda", "--samples", "10"];
+    let with = |more: &[&str]| refused(&[&some[..], more].concat());
+    assert!(with(&["--quantities", "poze"]).contains("--quantities: no quantity named 'poze'"));
+    assert!(with(&["--task", "w"]).contains("--task: no component named 'w'"));
+    assert!(with(&["--over", "a=0:1:2"]).contains("cannot be used with"));
+    assert!(with(&["--resume"]).contains("--out"));
+    text(&[&some[..], &["--out", out]].concat());
+    assert!(with(&["--out", out]).contains("it has a sweep already"));
+    let other = with(&["--seed", "3", "--out", out, "--resume"]);
+    assert!(other.contains("configurations.seed is 0 there and 3 now"), "{other}");
+    let none = refused(&["sweep", "panda"]);
+    assert!(none.contains("--samples"), "{none}");
+    let closed = refused(&["sweep", "five-bar", "--samples", "10", "--quantities", "measures"]);
+    assert!(closed.contains("--samples = five-bar") && closed.contains("assemble"), "{closed}");
+    let axis = refused(&["sweep", "panda", "--over", "panda_joint1=0:1"]);
+    assert!(axis.contains("name=first:last:number"), "{axis}");
+}

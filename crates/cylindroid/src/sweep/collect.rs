@@ -1,0 +1,49 @@
+//! All rows of a sweep in memory.
+//!
+//! Checked  tests/sweep/parts.rs::collected_rows_are_those_of_the_table
+
+use std::cell::Cell;
+use std::num::NonZeroUsize;
+
+use super::Progress;
+use super::options::Sweep;
+use super::parts::run_parts;
+use super::table::{Table, Values};
+use crate::error::Result;
+
+impl Sweep {
+    /// All rows, computed by several threads. `threads` and `observe` as in [`Sweep::write`]; `None`
+    /// if `observe` stopped the run.
+    ///
+    /// # Errors
+    /// As [`Sweep::table`].
+    pub fn collect(
+        &self,
+        threads: Option<NonZeroUsize>,
+        mut observe: impl FnMut(&Progress) -> bool,
+    ) -> Result<Option<Table>> {
+        let mut parts: Vec<Option<Table>> = vec![None; self.parts()];
+        let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
+        let work = |part: usize| self.table(self.rows_of(part));
+        let finished = |part: usize, table: Table| {
+            let done = state.get().done + table.rows() as u64;
+            state.set(Progress { rows: self.rows(), done, computed: done });
+            parts[part] = Some(table);
+        };
+        run_parts(self.parts(), threads, work, finished, || Ok(observe(&state.get())))?;
+        let columns = self.columns.clone();
+        let mut all: Vec<Values> = columns.iter().map(super::Column::empty).collect();
+        for part in parts {
+            let Some(part) = part else { return Ok(None) };
+            for (own, more) in all.iter_mut().zip(part.values) {
+                match (own, more) {
+                    (Values::Numbers(own), Values::Numbers(more)) => own.extend(more),
+                    (Values::Counts(own), Values::Counts(more)) => own.extend(more),
+                    (Values::Texts(own), Values::Texts(more)) => own.extend(more),
+                    _ => {}
+                }
+            }
+        }
+        Ok(Some(Table { columns, values: all }))
+    }
+}

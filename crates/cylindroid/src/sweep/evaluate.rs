@@ -1,0 +1,434 @@
+//! The quantities of a range of configurations, by the batches of the other modules.
+//!
+//! Shapes   rows in blocks of [`BLOCK`], small enough for the caches; results in columns
+//! Why so   every batch gives a configuration the same numbers whatever its place, so the blocks
+//!          change nothing, nor does the number of threads, each of which computes parts alone
+//! Checked  tests/sweep/parts.rs, tests/sweep/quantities.rs
+
+use std::ops::Range;
+use std::slice::IterMut;
+
+use super::options::{SweepOptions, VelocityMetric};
+use super::quantity::{COUNTS, PITCHES, Quantity};
+use super::singular_values::SingularValues;
+use super::source::Configurations;
+use super::table::{Column, Values};
+use crate::closure::ClosedChain;
+use crate::error::{Error, Result};
+use crate::kinematics::{EndEffector, KinematicsBatch, ReferenceFrame};
+use crate::linalg::Matrix;
+use crate::manipulability::{BatchOptions, ManipulabilityBatch, Metrics};
+use crate::model::{Dimension, Mechanism};
+use crate::screws::{ScrewOptions, ScrewSystem};
+use crate::spatial::Mat3;
+
+/// Rows computed at once.
+const BLOCK: usize = 1024;
+/// Numbers of a pose.
+const POSE: usize = 16;
+/// The components of a twist.
+const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+
+/// Computes rows.
+#[derive(Debug, Clone)]
+pub(super) struct Evaluator {
+    mechanism: Mechanism,
+    quantities: Vec<Quantity>,
+    pub(super) end_effector: EndEffector,
+    /// Components of the twist that measures see.
+    pub(super) task: Vec<usize>,
+    pub(super) length: f64,
+    kinematics: KinematicsBatch,
+    /// Of the Jacobian with linear rows over the length.
+    scaled: SingularValues,
+    yoshikawa: Volume,
+    measures: Option<ManipulabilityBatch>,
+}
+
+/// How the product of the singular values in the metric is found.
+#[derive(Debug, Clone)]
+enum Volume {
+    /// From the scaled ones: scaling rows of a wide matrix scales the product.
+    Factor(f64),
+    /// From others.
+    Own(SingularValues),
+}
+
+impl Evaluator {
+    pub(super) fn new(mechanism: &Mechanism, options: &SweepOptions) -> Result<Self> {
+        let wants = |quantity| options.quantities.contains(&quantity);
+        let length = options.length.unwrap_or(mechanism.reach());
+        Error::check_positive("length", length)?;
+        let default = if mechanism.is_closed() { mechanism.reference() } else { mechanism.tool() };
+        let end_effector = options.end_effector.unwrap_or(default.into());
+        mechanism.check_frame(end_effector.frame)?;
+        if mechanism.is_closed()
+            && let Some(quantity) = options.quantities.iter().find(|q| !q.has_loops())
+        {
+            return Err(Error::InvalidOption {
+                option: "quantities",
+                value: quantity.name().to_owned(),
+                reason: format!(
+                    "'{}' is a closed chain, whose Jacobian depends on its loops; use measures",
+                    mechanism.name()
+                ),
+            });
+        }
+        let task = components(mechanism, &options.task)?;
+        let factor = |i: &usize| if *i < 3 { 1.0 / length } else { 1.0 };
+        let rows: Vec<(usize, f64)> = task.iter().map(|i| (*i, factor(i))).collect();
+        let scaled = SingularValues::new(rows.clone(), vec![1.0; mechanism.n()]);
+        let yoshikawa = if wants(Quantity::Yoshikawa) {
+            volume(mechanism, options.metric, rows, length)?
+        } else {
+            Volume::Factor(1.0)
+        };
+        let measures = if wants(Quantity::Measures) {
+            Some(measures(mechanism, options, end_effector, length)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            mechanism: mechanism.clone(),
+            quantities: options.quantities.clone(),
+            end_effector,
+            task,
+            length,
+            kinematics: KinematicsBatch::new(mechanism, end_effector),
+            scaled,
+            yoshikawa,
+            measures,
+        })
+    }
+
+    /// Number of singular values.
+    pub(super) fn values(&self) -> usize {
+        self.scaled.len()
+    }
+
+    fn wants(&self, quantities: &[Quantity]) -> bool {
+        quantities.iter().any(|q| self.quantities.contains(q))
+    }
+
+    /// The rows, in the columns of the sweep.
+    pub(super) fn run(
+        &self,
+        from: &Configurations,
+        columns: &[Column],
+        rows: Range<u64>,
+    ) -> Result<Vec<Values>> {
+        let n = self.mechanism.n();
+        let all = usize::try_from(rows.end - rows.start).unwrap_or(0);
+        let mut out: Vec<Values> = columns.iter().map(Column::empty).collect();
+        for values in &mut out {
+            match values {
+                Values::Numbers(v) => v.reserve_exact(all),
+                Values::Counts(v) => v.reserve_exact(all),
+                Values::Texts(v) => v.reserve_exact(all),
+            }
+        }
+        let mut scratch = Scratch::new(self, all.min(BLOCK));
+        let mut start = rows.start;
+        while start < rows.end {
+            let end = rows.end.min(start + BLOCK as u64);
+            let count = usize::try_from(end - start).unwrap_or(0);
+            scratch.count = count;
+            from.write(start..end, &mut scratch.q[..count * n]);
+            let mut columns = out.iter_mut();
+            if let Some(Values::Counts(index)) = columns.next() {
+                index.extend(start..end);
+            }
+            put(&scratch.q[..count * n], n, n, &mut columns);
+            self.block(&mut scratch, start, &mut columns)?;
+            start = end;
+        }
+        Ok(out)
+    }
+
+    fn block(&self, s: &mut Scratch, start: u64, columns: &mut IterMut<'_, Values>) -> Result<()> {
+        use Quantity as Q;
+        let (n, count, k) = (self.mechanism.n(), s.count, self.values());
+        let q = &s.q[..count * n];
+        let poses = &mut s.poses[..if self.wants(&[Q::Pose]) { count * POSE } else { 0 }];
+        let jacobians = &mut s.jacobians[..];
+        let reference = ReferenceFrame::LocalWorldAligned;
+        let jacobians: &[f64] = if jacobians.is_empty() {
+            if !poses.is_empty() {
+                self.kinematics.poses_into(q, poses)?;
+            }
+            &[]
+        } else {
+            let jacobians = &mut jacobians[..count * 6 * n];
+            if poses.is_empty() {
+                self.kinematics.jacobians_into(q, reference, jacobians)?;
+            } else {
+                self.kinematics.poses_and_jacobians_into(q, reference, poses, jacobians)?;
+            }
+            jacobians
+        };
+        let mut scaled = &mut s.scaled[..];
+        if !scaled.is_empty() {
+            scaled = &mut scaled[..count * k];
+            self.scaled.run(jacobians, scaled);
+        }
+        for quantity in &self.quantities {
+            match quantity {
+                Q::Pose => {
+                    let mut own = numbers(columns, 7);
+                    for pose in poses.chunks_exact(POSE) {
+                        let row = position_and_quaternion(pose);
+                        own.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
+                    }
+                }
+                Q::Jacobian => put(jacobians, 6 * n, 6 * n, columns),
+                Q::SingularValues => put(scaled, k, k, columns),
+                Q::SmallestSingularValue => {
+                    extend(columns, scaled.chunks_exact(k).map(|v| v[k - 1]));
+                }
+                Q::Condition => extend(columns, scaled.chunks_exact(k).map(|v| v[0] / v[k - 1])),
+                Q::Yoshikawa => match &self.yoshikawa {
+                    Volume::Factor(factor) => {
+                        let volume = |v: &[f64]| factor * v.iter().product::<f64>();
+                        extend(columns, scaled.chunks_exact(k).map(volume));
+                    }
+                    Volume::Own(kernel) => {
+                        let mut values = vec![0.0; count * kernel.len()];
+                        kernel.run(jacobians, &mut values);
+                        extend(columns, values.chunks_exact(k).map(|v| v.iter().product()));
+                    }
+                },
+                Q::LimitDistance => {
+                    extend(columns, q.chunks_exact(n).map(|q| self.limit_distance(q)));
+                }
+                Q::GibsonHunt => self.screws(jacobians, start, columns)?,
+                Q::Measures => self.measure(q, start, columns)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn limit_distance(&self, q: &[f64]) -> f64 {
+        let distance = |(c, x): (&crate::model::Coordinate, &f64)| {
+            (x - c.limits.lower).min(c.limits.upper - x)
+        };
+        self.mechanism.coordinates().iter().zip(q).map(distance).fold(f64::INFINITY, f64::min)
+    }
+
+    fn screws(
+        &self,
+        jacobians: &[f64],
+        start: u64,
+        columns: &mut IterMut<'_, Values>,
+    ) -> Result<()> {
+        let n = self.mechanism.n();
+        let options = ScrewOptions::with_length(self.length);
+        let class = columns.next();
+        let mut pitches = numbers(columns, PITCHES);
+        let Some(Values::Texts(classes)) = class else { return Ok(()) };
+        for (i, j) in jacobians.chunks_exact(6 * n).enumerate() {
+            let matrix = Matrix::from_fn(6, n, |row, column| j[row * n + column]);
+            let system = ScrewSystem::of_columns(&matrix, &options)
+                .map_err(|error| at_row(error, start + i as u64))?;
+            classes.push(system.class().name());
+            let found = system.principal_pitches();
+            for (i, column) in pitches.iter_mut().enumerate() {
+                column.push(found.get(i).copied().unwrap_or(f64::NAN));
+            }
+        }
+        Ok(())
+    }
+
+    fn measure(&self, q: &[f64], start: u64, columns: &mut IterMut<'_, Values>) -> Result<()> {
+        const WIDTH: usize = ManipulabilityBatch::WIDTH;
+        let Some(batch) = &self.measures else { return Ok(()) };
+        let n = self.mechanism.n();
+        let mut found = vec![0.0; q.len() / n * WIDTH];
+        // Chunks that stay on this thread.
+        let chunks = found.chunks_mut(ManipulabilityBatch::CHUNK * WIDTH);
+        let rows = q.chunks(ManipulabilityBatch::CHUNK * n).enumerate();
+        for ((i, q), out) in rows.zip(chunks) {
+            let first = start + (i * ManipulabilityBatch::CHUNK) as u64;
+            batch.analyse_into(q, out).map_err(|error| at_row(error, first))?;
+        }
+        for (i, name) in ManipulabilityBatch::COLUMNS.iter().enumerate() {
+            let own = found.iter().skip(i).step_by(WIDTH).copied();
+            match columns.next() {
+                Some(Values::Numbers(column)) => column.extend(own),
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "small whole numbers"
+                )]
+                Some(Values::Counts(column)) => column.extend(own.map(|x| x as u64)),
+                _ => debug_assert!(COUNTS.contains(name)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Memory of a block.
+struct Scratch {
+    count: usize,
+    q: Vec<f64>,
+    poses: Vec<f64>,
+    jacobians: Vec<f64>,
+    scaled: Vec<f64>,
+}
+
+impl Scratch {
+    fn new(e: &Evaluator, rows: usize) -> Self {
+        use Quantity as Q;
+        let n = e.mechanism.n();
+        let of_values = [Q::SingularValues, Q::SmallestSingularValue, Q::Condition];
+        let scaled = e.wants(&of_values)
+            || (e.wants(&[Q::Yoshikawa]) && matches!(e.yoshikawa, Volume::Factor(_)));
+        let jacobians = scaled || e.wants(&[Q::Jacobian, Q::GibsonHunt, Q::Yoshikawa]);
+        let size = |used: bool, each: usize| vec![0.0; if used { rows * each } else { 0 }];
+        Self {
+            count: 0,
+            q: size(true, n),
+            poses: size(e.wants(&[Q::Pose]), POSE),
+            jacobians: size(jacobians, 6 * n),
+            scaled: size(scaled, e.values()),
+        }
+    }
+}
+
+/// The first `width` numbers of rows of `stride`, into as many columns.
+fn put(rows: &[f64], stride: usize, width: usize, columns: &mut IterMut<'_, Values>) {
+    for i in 0..width {
+        extend(columns, rows.iter().skip(i).step_by(stride).copied());
+    }
+}
+
+/// Numbers into the next column.
+fn extend(columns: &mut IterMut<'_, Values>, values: impl Iterator<Item = f64>) {
+    if let Some(Values::Numbers(column)) = columns.next() {
+        column.extend(values);
+    }
+}
+
+/// The next `count` columns of numbers.
+fn numbers<'a>(columns: &mut IterMut<'a, Values>, count: usize) -> Vec<&'a mut Vec<f64>> {
+    let next = columns.by_ref().take(count);
+    let own = next.filter_map(|values| match values {
+        Values::Numbers(numbers) => Some(numbers),
+        _ => None,
+    });
+    own.collect()
+}
+
+fn position_and_quaternion(m: &[f64]) -> [f64; 7] {
+    let rows = [[m[0], m[1], m[2]], [m[4], m[5], m[6]], [m[8], m[9], m[10]]];
+    let q = crate::spatial::Quaternion::of_matrix(Mat3::from_rows(rows));
+    [m[3], m[7], m[11], q.w, q.x, q.y, q.z]
+}
+
+/// The components of the twist that are meant.
+fn components(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>> {
+    let plane = mechanism.dimension() == Dimension::Planar;
+    let known: &[usize] = if plane { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
+    if names.is_empty() {
+        return Ok(known.to_vec());
+    }
+    let mut chosen = Vec::new();
+    for name in names {
+        let found = known.iter().find(|i| COMPONENTS[**i] == name);
+        let words = known.iter().map(|i| COMPONENTS[*i]);
+        let i = *found.ok_or_else(|| Error::unknown("component", name, words))?;
+        if chosen.contains(&i) {
+            return Err(Error::InvalidOption {
+                option: "task",
+                value: name.clone(),
+                reason: "it is named twice".to_owned(),
+            });
+        }
+        chosen.push(i);
+    }
+    Ok(chosen)
+}
+
+/// Velocity limits of the actuated joints, which a metric of limits needs.
+fn velocity_limits(mechanism: &Mechanism, names: &[String]) -> Result<Vec<f64>> {
+    let limit = |name: &String| {
+        let limit = mechanism.limits_of(name).map(|l| l.velocity);
+        limit.filter(|l| l.is_finite() && *l > 0.0).ok_or_else(|| Error::InvalidOption {
+            option: "metric",
+            value: "limits".to_owned(),
+            reason: format!("joint '{name}' has no velocity limit; give it one, or use 'length'"),
+        })
+    };
+    names.iter().map(limit).collect()
+}
+
+fn volume(
+    mechanism: &Mechanism,
+    metric: VelocityMetric,
+    scaled: Vec<(usize, f64)>,
+    length: f64,
+) -> Result<Volume> {
+    let n = mechanism.n();
+    let rows: Vec<(usize, f64)> = match metric {
+        VelocityMetric::Unit => scaled.iter().map(|(i, _)| (*i, 1.0)).collect(),
+        VelocityMetric::Length | VelocityMetric::Limits => scaled.clone(),
+    };
+    let mut columns = vec![1.0; n];
+    let coordinates = mechanism.coordinates();
+    if metric != VelocityMetric::Unit {
+        for (factor, c) in columns.iter_mut().zip(coordinates) {
+            *factor = if c.kind.is_length() { length } else { 1.0 };
+        }
+    }
+    if metric == VelocityMetric::Limits {
+        let names: Vec<String> = coordinates.iter().map(|c| c.name.clone()).collect();
+        columns = velocity_limits(mechanism, &names)?;
+    }
+    if rows.len() <= n && columns.iter().all(|c| *c == 1.0) {
+        let ratios = rows.iter().zip(&scaled).map(|(own, scaled)| own.1 / scaled.1);
+        return Ok(Volume::Factor(ratios.product()));
+    }
+    Ok(Volume::Own(SingularValues::new(rows, columns)))
+}
+
+fn measures(
+    mechanism: &Mechanism,
+    options: &SweepOptions,
+    end_effector: EndEffector,
+    length: f64,
+) -> Result<ManipulabilityBatch> {
+    let refuse = |option: &'static str, value: String, reason: &str| {
+        Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
+    };
+    if !options.task.is_empty() {
+        let reason = "measures are those of the whole twist; use yoshikawa, singular_values or \
+                      condition";
+        return refuse("task", options.task.join(","), reason);
+    }
+    if end_effector.frame_from_tool != crate::spatial::Pose::IDENTITY {
+        let reason = "measures are those of a frame of the model; define one at this point";
+        return refuse("tool", String::new(), reason);
+    }
+    let home = mechanism.state(mechanism.home())?;
+    let chain = ClosedChain::of(&home, Some(end_effector.frame), Some(length))?;
+    let mut metrics = match options.metric {
+        VelocityMetric::Unit => Metrics::UNIT,
+        _ => Metrics::characteristic_length(&chain.units, length)?,
+    };
+    if options.metric == VelocityMetric::Limits {
+        metrics = metrics.with_velocity_limits(&velocity_limits(mechanism, &chain.actuated)?)?;
+    }
+    let reference = Some(end_effector.frame);
+    let options = BatchOptions { reference, length: Some(length), metrics, generic: None };
+    ManipulabilityBatch::new(mechanism, &options)
+}
+
+/// The row of an error within a block.
+fn at_row(error: Error, row: u64) -> Error {
+    match error {
+        Error::NotFinite { what, value } => {
+            Error::NotFinite { what: format!("{what} (rows from {row})"), value }
+        }
+        other => other,
+    }
+}

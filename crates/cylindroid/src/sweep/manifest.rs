@@ -1,0 +1,114 @@
+//! `manifest.json` of a folder: the recipe, the columns, and the finished parts with their
+//! checksums.
+//!
+//! Why so   written under another name and renamed, so that it is always whole; a part that is not
+//!          in it is computed again
+//! Checked  tests/sweep/folder.rs
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::recipe::Recipe;
+use super::table::Column;
+use crate::error::{Error, Result};
+
+/// The file in the folder.
+pub(super) const MANIFEST: &str = "manifest.json";
+
+/// A finished part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Part {
+    pub(super) bytes: u64,
+    /// SHA-256 of the file.
+    pub(super) sha256: String,
+}
+
+/// The name of a part.
+pub(super) fn part_name(part: usize) -> String {
+    format!("part-{part:06}.parquet")
+}
+
+/// The manifest of a folder, if there is one.
+pub(super) fn read(folder: &Path) -> Result<Option<Value>> {
+    let path = folder.join(MANIFEST);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let text = crate::model::read_regular_file(&path, 1 << 30)?;
+    let value = serde_json::from_slice(&text).map_err(|error| Error::Io {
+        path,
+        action: "read",
+        message: format!("it is no manifest of a sweep: {error}"),
+    })?;
+    Ok(Some(value))
+}
+
+/// The finished parts that a manifest lists, by their number.
+pub(super) fn parts(manifest: &Value, count: usize) -> Vec<Option<Part>> {
+    let mut parts = vec![None; count];
+    for entry in manifest["parts"].as_array().into_iter().flatten() {
+        let number = entry["file"]
+            .as_str()
+            .and_then(|name| name.strip_prefix("part-")?.strip_suffix(".parquet")?.parse().ok());
+        let own = number.and_then(|number: usize| parts.get_mut(number));
+        if let (Some(own), Some(bytes), Some(sha256)) =
+            (own, entry["bytes"].as_u64(), entry["sha256"].as_str())
+        {
+            *own = Some(Part { bytes, sha256: sha256.to_owned() });
+        }
+    }
+    parts
+}
+
+/// Writes the manifest.
+pub(super) fn write(
+    folder: &Path,
+    (recipe, columns): (&Recipe, &[Column]),
+    (rows, part_rows): (u64, u64),
+    parts: &[Option<Part>],
+) -> Result<()> {
+    let column = |c: &Column| json!({"name": c.name, "unit": c.unit, "description": c.description});
+    let entry = |(i, part): (usize, &Option<Part>)| {
+        let part = part.as_ref()?;
+        let first = i as u64 * part_rows;
+        Some(json!({
+            "file": part_name(i),
+            "first_row": first,
+            "rows": part_rows.min(rows - first),
+            "bytes": part.bytes,
+            "sha256": part.sha256,
+        }))
+    };
+    let manifest = json!({
+        "recipe": recipe.0,
+        "columns": columns.iter().map(column).collect::<Vec<_>>(),
+        "rows": rows,
+        "complete": parts.iter().all(Option::is_some),
+        "parts": parts.iter().enumerate().filter_map(entry).collect::<Vec<_>>(),
+    });
+    let path = folder.join(MANIFEST);
+    let temporary = folder.join(".manifest.json.tmp");
+    let text = format!("{manifest:#}\n");
+    let written = File::create(&temporary).and_then(|mut file| {
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&temporary, &path)?;
+        sync_folder(folder)
+    });
+    written.map_err(|error| cannot_write(&path, &error))
+}
+
+/// Makes renamed files of a folder durable; Windows has nothing of the kind.
+fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+pub(super) fn cannot_write(path: &Path, error: &std::io::Error) -> Error {
+    let full = error.kind() == std::io::ErrorKind::StorageFull;
+    let hint = "; finished parts are kept, --resume continues after them";
+    let message = format!("{error}{}", if full { hint } else { "" });
+    Error::Io { path: path.to_owned(), action: "write", message }
+}

@@ -1,0 +1,47 @@
+//! Millions of configurations: samples, grids or files of them, quantities of each, a folder of
+//! Parquet files.
+//!
+//! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
+//! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
+//! `parquet_file` (a part), `recipe` and `folder` (a sweep on disk, which can be stopped and
+//! resumed).
+//!
+//! ```
+//! use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions};
+//!
+//! let robot = cylindroid::load("panda")?;
+//! let sweep = Sweep::new(&robot, SweepOptions {
+//!     source: Source::Samples { count: 1000, seed: 0 },
+//!     quantities: vec![Quantity::Pose, Quantity::Yoshikawa],
+//!     ..SweepOptions::default()
+//! })?;
+//! let table = sweep.table(0..1000)?;
+//! let measure = table.numbers("yoshikawa").unwrap();
+//! assert!(measure.iter().all(|w| *w >= 0.0));
+//! # Ok::<(), cylindroid::Error>(())
+//! ```
+
+mod collect;
+mod direction_numbers;
+mod evaluate;
+mod folder;
+mod manifest;
+mod options;
+mod parquet_file;
+mod parquet_input;
+mod parts;
+mod quantity;
+mod recipe;
+mod singular_values;
+mod sobol;
+mod source;
+mod statistics;
+mod table;
+
+pub use folder::{Progress, Summary, WriteOptions};
+pub use options::{Sweep, SweepOptions, VelocityMetric};
+pub use parquet_input::parquet_configurations;
+pub use quantity::Quantity;
+pub use source::{Axis, Source};
+pub use statistics::Statistics;
+pub use table::{Column, Table, Values};

@@ -1,0 +1,152 @@
+//! A table as a Parquet file.
+//!
+//! Shapes   one row group; columns without dictionary, compression and statistics: random numbers
+//!          do not compress, and a page is then a copy. Names are stored by dictionary
+//! Units    in the metadata `cylindroid` of the file: a JSON object with name, unit and description
+//!          of each column
+//! Checked  tests/sweep/folder.rs, tests/test_sweep.py of the Python package (pyarrow)
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
+use serde_json::json;
+use sha2::{Digest, Sha256};
+
+use super::manifest::{Part, cannot_write};
+use super::recipe::hexadecimal;
+use super::table::{Column, ColumnKind, Values};
+use crate::error::{Error, Result};
+
+/// Writes the columns, and makes the file durable.
+pub(super) fn write(path: &Path, columns: &[Column], values: &[Values]) -> Result<Part> {
+    let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
+    let mut sink = Hashed { file, hasher: Sha256::new(), bytes: 0, failed: None };
+    let written = into(&mut sink, columns, values);
+    if let Some(error) = sink.failed {
+        return Err(cannot_write(path, &error));
+    }
+    written.map_err(|error| Error::Io {
+        path: path.to_owned(),
+        action: "write",
+        message: error.to_string(),
+    })?;
+    sink.file.sync_all().map_err(|error| cannot_write(path, &error))?;
+    Ok(Part { bytes: sink.bytes, sha256: hexadecimal(&sink.hasher.finalize()) })
+}
+
+/// The checksum of a file.
+pub(super) fn checksum(path: &Path) -> io::Result<Part> {
+    let (mut file, mut hasher, mut bytes) = (File::open(path)?, Sha256::new(), 0);
+    let mut buffer = vec![0; 1 << 18];
+    loop {
+        let count = file.read(&mut buffer)?;
+        if count == 0 {
+            break;
+        }
+        hasher.update(&buffer[..count]);
+        bytes += count as u64;
+    }
+    Ok(Part { bytes, sha256: hexadecimal(&hasher.finalize()) })
+}
+
+/// A file and its checksum.
+struct Hashed {
+    file: File,
+    hasher: Sha256,
+    bytes: u64,
+    /// The first error, of which Parquet's keeps the text only.
+    failed: Option<io::Error>,
+}
+
+impl Write for Hashed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.file.write_all(bytes) {
+            Ok(()) => {
+                self.hasher.update(bytes);
+                self.bytes += bytes.len() as u64;
+                Ok(bytes.len())
+            }
+            Err(error) => {
+                let again = io::Error::new(error.kind(), error.to_string());
+                self.failed.get_or_insert(error);
+                Err(again)
+            }
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn schema(columns: &[Column]) -> std::result::Result<TypePtr, ParquetError> {
+    let field = |column: &Column| {
+        let (physical, logical) = match column.kind {
+            ColumnKind::Number => (Physical::DOUBLE, None),
+            ColumnKind::Count => (Physical::INT64, Some(LogicalType::integer(64, false))),
+            ColumnKind::Text => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        };
+        Type::primitive_type_builder(&column.name, physical)
+            .with_repetition(Repetition::REQUIRED)
+            .with_logical_type(logical)
+            .build()
+            .map(Arc::new)
+    };
+    let fields = columns.iter().map(field).collect::<std::result::Result<_, _>>()?;
+    Type::group_type_builder("sweep").with_fields(fields).build().map(Arc::new)
+}
+
+fn into(
+    sink: &mut Hashed,
+    columns: &[Column],
+    values: &[Values],
+) -> std::result::Result<(), ParquetError> {
+    let about = columns
+        .iter()
+        .map(|c| json!({"name": c.name, "unit": c.unit, "description": c.description}));
+    let about = json!({ "columns": about.collect::<Vec<_>>() }).to_string();
+    let mut properties = WriterProperties::builder()
+        .set_created_by(concat!("cylindroid ", env!("CARGO_PKG_VERSION")).to_owned())
+        .set_compression(Compression::UNCOMPRESSED)
+        .set_dictionary_enabled(false)
+        .set_statistics_enabled(EnabledStatistics::None)
+        .set_offset_index_disabled(true)
+        .set_key_value_metadata(Some(vec![KeyValue::new("cylindroid".to_owned(), about)]));
+    for column in columns.iter().filter(|c| c.kind == ColumnKind::Text) {
+        let path = ColumnPath::new(vec![column.name.clone()]);
+        properties = properties.set_column_dictionary_enabled(path, true);
+    }
+    let mut writer =
+        SerializedFileWriter::new(sink, schema(columns)?, Arc::new(properties.build()))?;
+    let mut group = writer.next_row_group()?;
+    for values in values {
+        let Some(mut column) = group.next_column()? else { break };
+        match values {
+            Values::Numbers(numbers) => {
+                column.typed::<DoubleType>().write_batch(numbers, None, None)?;
+            }
+            Values::Counts(counts) => {
+                // The bits of a signed number are those of the unsigned one.
+                let bits: Vec<i64> = counts.iter().map(|c| c.cast_signed()).collect();
+                column.typed::<Int64Type>().write_batch(&bits, None, None)?;
+            }
+            Values::Texts(texts) => {
+                let bytes: Vec<ByteArray> = texts.iter().map(|t| ByteArray::from(*t)).collect();
+                column.typed::<ByteArrayType>().write_batch(&bytes, None, None)?;
+            }
+        }
+        column.close()?;
+    }
+    group.close()?;
+    writer.close()?;
+    Ok(())
+}

@@ -1,0 +1,72 @@
+//! Parts of a sweep on several threads.
+//!
+//! Why so   each thread takes the next part, alone, so that memory is that of as many parts as there
+//!          are threads, and numbers do not depend on how many there are
+//! Checked  tests/sweep/folder.rs::threads_change_nothing
+
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use crate::error::Result;
+
+/// Between two calls of `tick` at most.
+const TICK: Duration = Duration::from_millis(100);
+
+/// Runs `work` on the parts 0 to `count`, as many at a time as there are threads. On the thread of
+/// the caller, `finished` takes each result as it comes and `tick` says whether to go on; after
+/// false, parts that have been started are finished and no others begin. The first error ends the
+/// run in the same way and is returned.
+pub(super) fn run_parts<T: Send>(
+    count: usize,
+    threads: Option<NonZeroUsize>,
+    work: impl Fn(usize) -> Result<T> + Sync,
+    mut finished: impl FnMut(usize, T),
+    mut tick: impl FnMut() -> Result<bool>,
+) -> Result<()> {
+    let threads = threads.or_else(|| thread::available_parallelism().ok());
+    let threads = threads.map_or(1, NonZeroUsize::get).min(count.max(1));
+    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let (sender, receiver) = mpsc::channel();
+    let mut result = Ok(());
+    thread::scope(|scope| {
+        for _ in 0..threads {
+            let sender = sender.clone();
+            let (next, stop, work) = (&next, &stop, &work);
+            scope.spawn(move || {
+                while !stop.load(Ordering::Relaxed) {
+                    let part = next.fetch_add(1, Ordering::Relaxed);
+                    // The receiver outlives the threads.
+                    if part >= count || sender.send((part, work(part))).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        loop {
+            match receiver.recv_timeout(TICK) {
+                Ok((part, Ok(own))) => finished(part, own),
+                Ok((_, Err(error))) => {
+                    stop.store(true, Ordering::Relaxed);
+                    result = std::mem::replace(&mut result, Ok(())).and(Err(error));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if result.is_ok() {
+                match tick() {
+                    Ok(true) => {}
+                    Ok(false) => stop.store(true, Ordering::Relaxed),
+                    Err(error) => {
+                        stop.store(true, Ordering::Relaxed);
+                        result = Err(error);
+                    }
+                }
+            }
+        }
+    });
+    result
+}

@@ -1,0 +1,128 @@
+//! Singular values of many Jacobians of one shape, batched.
+//!
+//! Formula  sigma(D_r J_t D_c): chosen rows J_t of J, scaled rows and columns
+//! Shapes   J: N x 6 x n, values: N x min(t, n), largest first; row-major
+//! Units    of the scaled Jacobian
+//! Valid    any rank: errors of one rounding of the largest value
+//! Why so   one Jacobian in each lane of a register; no lane depends on the others, so a value
+//!          depends neither on its place nor on the number of rows
+//! Checked  tests::agree_with_single, tests/sweep/parts.rs
+
+use crate::linalg::batched::{round_robin_pairs, singular_values};
+use crate::scalar::{Array, SimdFloat};
+#[cfg(target_arch = "x86_64")]
+use crate::scalar::{Avx2, Lanes4};
+
+/// The shape and the scales.
+#[derive(Debug, Clone)]
+pub(super) struct SingularValues {
+    /// Columns of the Jacobian.
+    n: usize,
+    /// Rows of the Jacobian, with their factors.
+    rows: Vec<(usize, f64)>,
+    /// Factors of the columns.
+    columns: Vec<f64>,
+    pairs: Vec<(usize, usize)>,
+}
+
+impl SingularValues {
+    pub(super) fn new(rows: Vec<(usize, f64)>, columns: Vec<f64>) -> Self {
+        let n = columns.len();
+        let pairs = round_robin_pairs(rows.len().min(n));
+        Self { n, rows, columns, pairs }
+    }
+
+    /// Number of values of a Jacobian.
+    pub(super) fn len(&self) -> usize {
+        self.rows.len().min(self.n)
+    }
+
+    /// The values of all Jacobians.
+    pub(super) fn run(&self, jacobians: &[f64], out: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(cpu) = Avx2::detect() {
+            #[allow(unsafe_code)] // the one way to call a function compiled for more
+            // SAFETY: the token proves that the processor has both features.
+            unsafe {
+                self.run_avx2(cpu, jacobians, out);
+            }
+            return;
+        }
+        self.run_with::<Array<4>>((), jacobians, out);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn run_avx2(&self, cpu: Avx2, jacobians: &[f64], out: &mut [f64]) {
+        self.run_with::<Lanes4>(cpu, jacobians, out);
+    }
+
+    #[inline(always)]
+    fn run_with<R: SimdFloat>(&self, _: R::Cpu, jacobians: &[f64], out: &mut [f64]) {
+        let (k, n, t) = (self.len(), self.n, self.rows.len());
+        let size = 6 * n;
+        let long = t.max(n);
+        let mut columns = vec![R::splat(0.0); long * k];
+        let mut values = vec![R::splat(0.0); k];
+        let mut tail = vec![0.0; R::LANES * k];
+        for (from, to) in jacobians.chunks(R::LANES * size).zip(out.chunks_mut(R::LANES * k)) {
+            // Lanes that are left over repeat the last Jacobian.
+            let count = from.len() / size;
+            for (i, (row, scale)) in self.rows.iter().enumerate() {
+                for (j, factor) in self.columns.iter().enumerate() {
+                    let entry = row * n + j;
+                    let x = R::from_fn(|lane| from[lane.min(count - 1) * size + entry]);
+                    // The shorter side are the columns.
+                    let place = if t <= n { i * n + j } else { j * t + i };
+                    columns[place] = x * R::splat(scale * factor);
+                }
+            }
+            singular_values(&mut columns, long, &self.pairs, &mut values);
+            if count == R::LANES {
+                R::scatter(&values, to, k);
+            } else {
+                R::scatter(&values, &mut tail, k);
+                to.copy_from_slice(&tail[..count * k]);
+            }
+            for own in to.chunks_exact_mut(k) {
+                own.sort_unstable_by(|a, b| b.total_cmp(a));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::{Matrix, Svd};
+    use crate::scalar::uniform;
+
+    #[test]
+    fn agree_with_single() {
+        let mut random = 5;
+        for n in 1..10 {
+            for rows in [vec![0, 1, 2, 3, 4, 5], vec![0, 1, 5], vec![2]] {
+                let scales: Vec<f64> = rows.iter().map(|_| uniform(&mut random) + 0.5).collect();
+                let factors: Vec<f64> = (0..n).map(|_| uniform(&mut random) + 0.5).collect();
+                let chosen = rows.iter().copied().zip(scales.iter().copied()).collect();
+                let kernel = SingularValues::new(chosen, factors.clone());
+                let all: Vec<f64> = (0..7 * 6 * n).map(|_| uniform(&mut random) - 0.5).collect();
+                let mut found = vec![0.0; 7 * kernel.len()];
+                kernel.run(&all, &mut found);
+                for (j, found) in all.chunks(6 * n).zip(found.chunks(kernel.len())) {
+                    let a = Matrix::from_fn(rows.len(), n, |i, c| {
+                        j[rows[i] * n + c] * scales[i] * factors[c]
+                    });
+                    let svd = Svd::of(&a);
+                    for (x, y) in found.iter().zip(svd.values()) {
+                        assert!((x - y).abs() <= 1e-14 * svd.value(0), "{n}: {x} and {y}");
+                    }
+                    // Alone, the same to the bit.
+                    let mut alone = vec![0.0; kernel.len()];
+                    kernel.run(j, &mut alone);
+                    assert_eq!(alone, found);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! The configurations of a sweep: configuration i is a function of i alone.
+//!
+//! Formula  samples: lower + x (upper - lower), x the point i of sobol.rs; spherical joints and free
+//!          bodies by quaternions uniform on the sphere. Grids: the last axis changes fastest
+//! Shapes   q: rows x n, row-major
+//! Units    rad, m
+//! Valid    samples and grids: mechanisms without loops, whose configurations are free. Samples:
+//!          position limits on every slider; a joint without limits is sampled in [-pi, pi)
+//! Source   Shoemake 1992 (uniform rotations)
+//! Checked  tests/sweep/sampling.rs
+
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use super::sobol::Sobol;
+use crate::error::{Error, Result};
+use crate::model::{CoordinateKind, Mechanism};
+use crate::spatial::Quaternion;
+use crate::tolerance::MAX_MAGNITUDE;
+
+/// The configurations of a sweep.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Source {
+    /// Scrambled Sobol' points within the position limits; joints without limits turn through
+    /// [-pi, pi).
+    Samples {
+        /// Number of configurations.
+        count: u64,
+        /// Selects one of the scrambled sequences.
+        seed: u64,
+    },
+    /// A grid over some coordinates; the last axis changes fastest.
+    Grid {
+        /// One for each coordinate of the grid.
+        axes: Vec<Axis>,
+        /// The other coordinates, n numbers (rad or m); home if empty.
+        rest: Vec<f64>,
+    },
+    /// These, one after the other, n numbers each (rad or m).
+    Configurations(Vec<f64>),
+}
+
+/// An axis of a grid: `count` values from `from` to `to`, both included (rad or m).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The coordinate.
+    pub name: String,
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+    /// Number of values; 1 is `from` alone.
+    pub count: u64,
+}
+
+impl Axis {
+    /// The value `i`.
+    #[must_use]
+    pub fn value(&self, i: u64) -> f64 {
+        let last = self.count.saturating_sub(1);
+        match i {
+            0 => self.from,
+            i if i == last => self.to,
+            i => self.from + (self.to - self.from) * (i as f64 / last as f64),
+        }
+    }
+}
+
+/// A source for a mechanism, checked.
+#[derive(Debug, Clone)]
+pub(super) struct Configurations {
+    pub(super) rows: u64,
+    n: usize,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    Samples { sobol: Sobol, ranges: Vec<[f64; 2]>, rotations: Vec<usize> },
+    Grid { axes: Vec<Axis>, places: Vec<usize>, rest: Vec<f64> },
+    Given(Vec<f64>),
+}
+
+impl Configurations {
+    pub(super) fn new(mechanism: &Mechanism, source: &Source) -> Result<Self> {
+        let n = mechanism.n();
+        if n == 0 {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: String::new(),
+                message: "it has no coordinates to sweep".to_owned(),
+            });
+        }
+        let free = |option: &'static str| match mechanism.is_closed() {
+            false => Ok(()),
+            true => Err(Error::InvalidOption {
+                option,
+                value: mechanism.name().to_owned(),
+                reason: "its loops leave no free choice of all coordinates; give closed \
+                         configurations (`assemble`) as a file or array"
+                    .to_owned(),
+            }),
+        };
+        let (rows, kind) = match source {
+            Source::Samples { count, seed } => {
+                free("samples")?;
+                (*count, samples(mechanism, *count, *seed)?)
+            }
+            Source::Grid { axes, rest } => {
+                free("over")?;
+                grid(mechanism, axes, rest)?
+            }
+            Source::Configurations(q) => {
+                let rows = mechanism.count_rows("configurations", q)?;
+                mechanism.check_rows("configurations", q)?;
+                (rows as u64, Kind::Given(q.clone()))
+            }
+        };
+        Ok(Self { rows, n, kind })
+    }
+
+    /// Those of `rows` into `out`.
+    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) {
+        let n = self.n;
+        match &self.kind {
+            Kind::Given(q) => {
+                let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX) * n;
+                out.copy_from_slice(&q[at(rows.start)..at(rows.end)]);
+            }
+            Kind::Grid { axes, places, rest } => {
+                for (row, q) in rows.zip(out.chunks_exact_mut(n)) {
+                    q.copy_from_slice(rest);
+                    let mut left = row;
+                    for (axis, place) in axes.iter().zip(places).rev() {
+                        q[*place] = axis.value(left % axis.count);
+                        left /= axis.count;
+                    }
+                }
+            }
+            Kind::Samples { sobol, ranges, rotations } => {
+                // Below 2^32, see `samples`.
+                sobol.write(u32::try_from(rows.start).unwrap_or(u32::MAX), out);
+                for q in out.chunks_exact_mut(n) {
+                    for &c in rotations {
+                        let point = [q[c], q[c + 1], q[c + 2]];
+                        q[c..c + 3].copy_from_slice(&rotation_vector(point));
+                    }
+                    for (x, [lower, upper]) in q.iter_mut().zip(ranges) {
+                        *x = lower + *x * (upper - lower);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn samples(mechanism: &Mechanism, count: u64, seed: u64) -> Result<Kind> {
+    let n = mechanism.n();
+    let refuse = |option: &'static str, value: String, reason: String| {
+        Err(Error::InvalidOption { option, value, reason })
+    };
+    if count == 0 || count > 1 << 32 {
+        return refuse("samples", count.to_string(), "1 to 2^32 are possible".to_owned());
+    }
+    if n > Sobol::DIMENSIONS {
+        let most = Sobol::DIMENSIONS;
+        let reason = format!("{n} coordinates, and samples have at most {most}; give a file");
+        return refuse("samples", mechanism.name().to_owned(), reason);
+    }
+    let (mut ranges, mut rotations) = (Vec::with_capacity(n), Vec::new());
+    for (i, c) in mechanism.coordinates().iter().enumerate() {
+        let (lower, upper) = (c.limits.lower, c.limits.upper);
+        ranges.push(match c.kind {
+            _ if lower.is_finite() && upper.is_finite() => [lower, upper],
+            CoordinateKind::Angle if lower.is_infinite() && upper.is_infinite() => [-PI, PI],
+            CoordinateKind::RotationVector => {
+                // Three beside one another, of one joint.
+                if rotations.last().is_none_or(|&r: &usize| i >= r + 3) {
+                    rotations.push(i);
+                }
+                [0.0, 1.0]
+            }
+            _ => {
+                let reason = format!(
+                    "coordinate '{}' has no position limits on one side at least ({lower} to {upper} \
+                     {}); give it some, or a file of configurations",
+                    c.name,
+                    c.kind.unit()
+                );
+                return refuse("samples", mechanism.name().to_owned(), reason);
+            }
+        });
+    }
+    Ok(Kind::Samples { sobol: Sobol::new(n, seed), ranges, rotations })
+}
+
+/// The rotation vector of a rotation, uniform if the point of the unit cube is.
+fn rotation_vector([a, b, c]: [f64; 3]) -> [f64; 3] {
+    let (s, t) = ((1.0 - a).sqrt(), a.sqrt());
+    let ((sin_b, cos_b), (sin_c, cos_c)) = ((TAU * b).sin_cos(), (TAU * c).sin_cos());
+    let quaternion = Quaternion { w: t * cos_c, x: s * sin_b, y: s * cos_b, z: t * sin_c };
+    quaternion.rotation().map_or([0.0; 3], |rotation| rotation.log().to_array())
+}
+
+fn grid(mechanism: &Mechanism, axes: &[Axis], rest: &[f64]) -> Result<(u64, Kind)> {
+    let refuse = |value: String, reason: &str| {
+        Err(Error::InvalidOption { option: "over", value, reason: reason.to_owned() })
+    };
+    if axes.is_empty() {
+        return refuse(String::new(), "a grid has one axis at least");
+    }
+    let rest = if rest.is_empty() { mechanism.home() } else { rest };
+    mechanism.check_q("q", rest)?;
+    let (mut rows, mut places) = (1_u64, Vec::with_capacity(axes.len()));
+    for axis in axes {
+        let names = mechanism.coordinates().iter().map(|c| &c.name);
+        let place = names.clone().position(|name| *name == axis.name);
+        let place = place.ok_or_else(|| Error::unknown("coordinate", &axis.name, names))?;
+        if places.contains(&place) {
+            return refuse(axis.name.clone(), "a coordinate can be one axis only");
+        }
+        Error::check_within(&axis.name, &[axis.from, axis.to], MAX_MAGNITUDE)?;
+        rows = match rows.checked_mul(axis.count) {
+            Some(0) => return refuse(axis.name.clone(), "an axis has one value at least"),
+            Some(rows) if rows <= 1 << 48 => rows,
+            _ => return refuse(axis.name.clone(), "the grid has more than 2^48 points"),
+        };
+        places.push(place);
+    }
+    Ok((rows, Kind::Grid { axes: axes.to_vec(), places, rest: rest.to_vec() }))
+}

@@ -1,0 +1,151 @@
+//! Statistics of the columns of a sweep, without its rows.
+//!
+//! Formula  smallest, mean and largest of the finite numbers; how many others; how often each name.
+//!          Sums are those of the parts in their order, so that threads change no digit
+//! Checked  tests/sweep/quantities.rs::statistics_are_those_of_the_table,
+//!          tests/sweep/pinocchio.rs
+
+use std::num::NonZeroUsize;
+
+use super::options::Sweep;
+use super::parts::run_parts;
+use super::table::{Table, Values};
+use super::{Column, Progress};
+use crate::error::Result;
+
+/// Statistics of a column.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Statistics {
+    /// Of numbers; NaN where none is finite.
+    Numbers {
+        /// Smallest finite number.
+        smallest: f64,
+        /// Mean of the finite numbers.
+        mean: f64,
+        /// Largest finite number.
+        largest: f64,
+        /// How many are infinite or NaN.
+        not_finite: u64,
+    },
+    /// How often each name occurs, in the order of the alphabet.
+    Texts(Vec<(&'static str, u64)>),
+}
+
+#[derive(Debug, Clone)]
+enum Sum {
+    Numbers { smallest: f64, sum: f64, largest: f64, finite: u64, not_finite: u64 },
+    Texts(Vec<(&'static str, u64)>),
+}
+
+impl Sum {
+    fn of(values: &Values) -> Self {
+        match values {
+            Values::Numbers(numbers) => Self::numbers(numbers.iter().copied()),
+            Values::Counts(counts) => Self::numbers(counts.iter().map(|c| *c as f64)),
+            Values::Texts(texts) => {
+                let mut own = Self::Texts(Vec::new());
+                texts.iter().for_each(|text| own.count(text, 1));
+                own
+            }
+        }
+    }
+
+    fn numbers(all: impl Iterator<Item = f64>) -> Self {
+        let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut sum, mut finite, mut not_finite) = (0.0, 0, 0);
+        for x in all {
+            if x.is_finite() {
+                (smallest, largest) = (smallest.min(x), largest.max(x));
+                (sum, finite) = (sum + x, finite + 1);
+            } else {
+                not_finite += 1;
+            }
+        }
+        Self::Numbers { smallest, sum, largest, finite, not_finite }
+    }
+
+    fn count(&mut self, text: &'static str, times: u64) {
+        let Self::Texts(own) = self else { return };
+        match own.binary_search_by(|(name, _)| name.cmp(&text)) {
+            Ok(place) => own[place].1 += times,
+            Err(place) => own.insert(place, (text, times)),
+        }
+    }
+
+    fn add(&mut self, other: &Self) {
+        match (&mut *self, other) {
+            (
+                Self::Numbers { smallest, sum, largest, finite, not_finite },
+                Self::Numbers {
+                    smallest: least,
+                    sum: more,
+                    largest: most,
+                    finite: f,
+                    not_finite: n,
+                },
+            ) => {
+                (*smallest, *largest) = (smallest.min(*least), largest.max(*most));
+                (*sum, *finite, *not_finite) = (*sum + more, *finite + f, *not_finite + n);
+            }
+            (_, Self::Texts(texts)) => texts.iter().for_each(|(text, n)| self.count(text, *n)),
+            _ => {}
+        }
+    }
+
+    fn statistics(self) -> Statistics {
+        match self {
+            Self::Texts(texts) => Statistics::Texts(texts),
+            Self::Numbers { finite: 0, not_finite, .. } => {
+                let none = f64::NAN;
+                Statistics::Numbers { smallest: none, mean: none, largest: none, not_finite }
+            }
+            Self::Numbers { smallest, sum, largest, finite, not_finite } => {
+                Statistics::Numbers { smallest, mean: sum / finite as f64, largest, not_finite }
+            }
+        }
+    }
+}
+
+impl Sweep {
+    /// The statistics of every column but `index`, with its name and unit. `threads` and `observe`
+    /// as in [`Sweep::write`]; `None` if `observe` stopped the run.
+    ///
+    /// # Errors
+    /// As [`Sweep::table`].
+    pub fn statistics(
+        &self,
+        threads: Option<NonZeroUsize>,
+        mut observe: impl FnMut(&Progress) -> bool,
+    ) -> Result<Option<Vec<(Column, Statistics)>>> {
+        let mut parts: Vec<Option<Vec<Sum>>> = vec![None; self.parts()];
+        let progress = std::cell::Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
+        let work = |part: usize| {
+            let Table { values, .. } = self.table(self.rows_of(part))?;
+            Ok(values.iter().skip(1).map(Sum::of).collect::<Vec<_>>())
+        };
+        let finished = |part: usize, sums| {
+            let rows = self.rows_of(part);
+            let Progress { done, computed, .. } = progress.get();
+            let more = rows.end - rows.start;
+            progress.set(Progress {
+                rows: self.rows(),
+                done: done + more,
+                computed: computed + more,
+            });
+            parts[part] = Some(sums);
+        };
+        run_parts(self.parts(), threads, work, finished, || Ok(observe(&progress.get())))?;
+        let mut all: Option<Vec<Sum>> = None;
+        for part in parts {
+            let Some(part) = part else { return Ok(None) };
+            match &mut all {
+                None => all = Some(part),
+                Some(all) => all.iter_mut().zip(&part).for_each(|(sum, more)| sum.add(more)),
+            }
+        }
+        let columns = self.columns.iter().skip(1).cloned();
+        let statistics = all.into_iter().flatten().map(Sum::statistics);
+        Ok(Some(columns.zip(statistics).collect()))
+    }
+}

@@ -1,0 +1,92 @@
+//! Rows of a sweep in columns.
+
+/// A column: its name, unit and meaning.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Its SI unit; "1" for numbers without one, empty for others.
+    pub unit: &'static str,
+    /// One phrase.
+    pub description: &'static str,
+    /// The type of its entries.
+    pub(super) kind: ColumnKind,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ColumnKind {
+    Number,
+    Count,
+    Text,
+}
+
+impl Column {
+    pub(super) fn number(name: &str, unit: &'static str, description: &'static str) -> Self {
+        Self { name: name.to_owned(), unit, description, kind: ColumnKind::Number }
+    }
+
+    pub(super) fn count(name: &str, description: &'static str) -> Self {
+        Self { name: name.to_owned(), unit: "", description, kind: ColumnKind::Count }
+    }
+
+    pub(super) fn text(name: &str, description: &'static str) -> Self {
+        Self { name: name.to_owned(), unit: "", description, kind: ColumnKind::Text }
+    }
+
+    pub(super) fn empty(&self) -> Values {
+        match self.kind {
+            ColumnKind::Number => Values::Numbers(Vec::new()),
+            ColumnKind::Count => Values::Counts(Vec::new()),
+            ColumnKind::Text => Values::Texts(Vec::new()),
+        }
+    }
+}
+
+/// The entries of a column.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Values {
+    /// Real numbers; infinite or NaN where the description says so.
+    Numbers(Vec<f64>),
+    /// Whole numbers.
+    Counts(Vec<u64>),
+    /// Names.
+    Texts(Vec<&'static str>),
+}
+
+/// Rows of a sweep in columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// The columns.
+    pub columns: Vec<Column>,
+    /// Their entries, in the same order.
+    pub values: Vec<Values>,
+}
+
+impl Table {
+    /// Number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.values.first().map_or(0, |values| match values {
+            Values::Numbers(v) => v.len(),
+            Values::Counts(v) => v.len(),
+            Values::Texts(v) => v.len(),
+        })
+    }
+
+    /// The column of a name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&Values> {
+        let place = self.columns.iter().position(|c| c.name == name)?;
+        self.values.get(place)
+    }
+
+    /// The column of a name, if it is one of real numbers.
+    #[must_use]
+    pub fn numbers(&self, name: &str) -> Option<&[f64]> {
+        match self.column(name)? {
+            Values::Numbers(numbers) => Some(numbers),
+            _ => None,
+        }
+    }
+}
