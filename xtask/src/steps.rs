@@ -131,6 +131,7 @@ pub(crate) fn vectors() -> Result<()> {
         ("pitch_form", "pitch_forms"),
         ("collision", "collision"),
         ("mesh_mass", "mesh_masses"),
+        ("sweep", "sweep"),
     ] {
         let script = format!("xtask/vectors/{script}_vectors.py");
         let folder = format!("crates/cylindroid/tests/vectors/{folder}");

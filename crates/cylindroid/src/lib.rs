@@ -31,6 +31,7 @@
 //! | count mobility, find singularities | [`closure::Mobility`], [`closure::Diagnosis`], [`closure::FiniteMobility`] |
 //! | resolve forces of closed chains and grasps | [`closure::joint_torques`], [`closure::contact_forces`], [`closure::grasp_quality`] |
 //! | measure manipulability (Yoshikawa, ellipsoids, polytopes) | [`manipulability::Manipulability`], [`manipulability::Polytope`] |
+//! | sample millions of configurations into Parquet files | [`sweep::Sweep`] |
 //!
 //! # Conventions
 //!
@@ -42,12 +43,12 @@
 //!
 //! The modules form one line, each imports only those before it: `error, tolerance, scalar, linalg,
 //! spatial, screws, inverse, model, kinematics, collision, closure, manipulability, task,
-//! ik, control`.
+//! ik, control, sweep`.
 //!
 //! # Features
 //!
-//! Both are on by default: `formats` (file loaders and the catalogue) and `parallel` (batches on
-//! several threads).
+//! All are on by default: `formats` (file loaders and the catalogue), `parallel` (batches on several
+//! threads) and `sweep` (millions of configurations into Parquet files).
 
 #![cfg_attr(test, allow(clippy::float_cmp_const))]
 
@@ -104,6 +105,7 @@ mod book {
         GuideMobility "../../../docs/guide/mobility.md"
         GuideScrews "../../../docs/guide/screws.md"
         GuideStatics "../../../docs/guide/statics.md"
+        GuideSweeps "../../../docs/guide/sweeps.md"
         StartRust "../../../docs/start/rust.md"
     }
 }

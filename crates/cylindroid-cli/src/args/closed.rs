@@ -194,9 +194,10 @@ pub(crate) struct ManipulabilityArgs {
     #[arg(long, value_name = "MEASURE")]
     pub(crate) gradient: Option<MeasureName>,
 
-    /// In place of one configuration those of a .csv or .json file, a row each [rad or m]: mobility,
-    /// distances to singularities and measures of motion as numbers. A first line of CSV names the
-    /// columns, in any order; other columns are ignored, as in the files of `move --out`
+    /// In place of one configuration those of a .csv, .json or .parquet file, a row each [rad or m]:
+    /// mobility, distances to singularities and measures of motion as numbers. Columns with names,
+    /// those of Parquet and of a first line of CSV, may be in any order; other columns are ignored,
+    /// as in the files of `move --out`
     #[arg(long, value_name = "FILE", conflicts_with_all = [
         "q", "degrees", "ww", "wtau", "wt", "task", "task_map", "polytope", "torque_limits", "gradient",
         "plot",

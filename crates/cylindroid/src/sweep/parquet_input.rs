@@ -35,7 +35,7 @@ pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
         let is_it = |c: &&str| c == name || c.strip_prefix("q.") == Some(name);
         let place = columns
             .iter()
-            .position(|c| is_it(c))
+            .position(is_it)
             .ok_or_else(|| refuse(format!("no column '{name}' among {}", columns.join(", "))))?;
         fields.push(place);
     }

@@ -9,6 +9,7 @@
 
 mod folder;
 mod parts;
+mod pinocchio;
 mod quantities;
 mod sampling;
 

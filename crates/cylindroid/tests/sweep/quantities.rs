@@ -183,7 +183,9 @@ fn statistics_are_those_of_the_table() {
     let sweep = Sweep::new(&robot, options).unwrap();
     let table = sweep.table(0..1000).unwrap();
     let found = sweep.statistics(None, |_| true).unwrap().unwrap();
-    assert_eq!(found, sweep.statistics(1.try_into().ok(), |_| true).unwrap().unwrap());
+    let alone = sweep.statistics(1.try_into().ok(), |_| true).unwrap().unwrap();
+    // In words, which compare what is not a number too.
+    assert_eq!(format!("{found:?}"), format!("{alone:?}"));
     assert_eq!(found.len(), table.columns.len() - 1);
     for (column, statistics) in found {
         match statistics {

@@ -1,0 +1,123 @@
+"""Sweeps: columns against single calls, folders that other programs read, names before places."""
+
+import hashlib
+import json
+
+import numpy as np
+import pyarrow.parquet as parquet
+import pytest
+
+import cylindroid as cy
+
+QUANTITIES = ["pose", "jacobian", "yoshikawa", "limit_distance", "gibson_hunt"]
+
+
+def configurations(robot, found):
+    return np.stack([found[name] for name in robot.joint_names], axis=1)
+
+
+def test_columns_are_those_of_single_calls():
+    robot = cy.load("youbot")
+    found = cy.sweep(robot, samples=200, seed=3, quantities=QUANTITIES)
+    q = configurations(robot, found)
+    poses, jacobians = robot.fk(q), robot.jacobian(q)
+    assert np.allclose(np.stack([found[c] for c in "xyz"], 1), poses[:, :3, 3], atol=1e-14)
+    for row, name in enumerate(["vx", "vy", "vz", "wx", "wy", "wz"]):
+        for column, joint in enumerate(robot.joint_names):
+            own = found[f"jacobian_{name}_{joint}"]
+            assert np.allclose(own, jacobians[:, row, column], atol=1e-14)
+    volume = np.linalg.svd(jacobians, compute_uv=False).prod(1)
+    assert np.allclose(found["yoshikawa"], volume, atol=1e-12)
+    distance = np.minimum(q - robot.lower, robot.upper - q).min(1)
+    assert np.array_equal(found["limit_distance"], distance)
+    assert found["index"].dtype == np.uint64 and list(found["gibson_hunt"][:2]) == ["h", "h"]
+    measures = robot.measures(q)
+    same = cy.sweep(robot, configurations=q, quantities=["measures"])
+    for name, values in measures.items():
+        assert np.array_equal(same[name], values, equal_nan=values.dtype == float), name
+
+
+def test_threads_change_nothing():
+    robot = cy.load("panda")
+    a, b = (cy.sweep(robot, samples=100_000, threads=k) for k in (1, 3))
+    assert all(np.array_equal(a[name], b[name]) for name in a)
+
+
+def test_names_before_places():
+    robot = cy.load("panda")
+    found = cy.sweep(robot, samples=20, quantities=["pose"])
+    turned = {name: found[name] for name in reversed(list(found))}
+    again = cy.sweep(robot, configurations=turned, quantities=["pose"])
+    assert all(np.array_equal(found[name], again[name]) for name in found)
+    del turned["panda_joint3"]
+    with pytest.raises(cy.InvalidOptionError, match="no column 'panda_joint3'"):
+        cy.sweep(robot, configurations=turned)
+    with pytest.raises(cy.DimensionError):
+        cy.sweep(robot, configurations=np.zeros((3, 6)))
+    grid = cy.sweep(robot, over={"panda_joint1": (-1.0, 1.0, 3)}, quantities=[])
+    assert list(grid["panda_joint1"]) == [-1, 0, 1]
+    assert (grid["panda_joint2"] == robot.home[1]).all()
+
+
+def test_folders(tmp_path):
+    robot = cy.load("youbot")
+    folder = tmp_path / "sweep"
+    summary = cy.sweep(robot, samples=70_000, quantities=QUANTITIES, out=folder)
+    assert (summary.folder, summary.rows, summary.parts) == (folder, 70_000, 2)
+    assert summary.computed == summary.rows
+    expected = cy.sweep(robot, samples=70_000, quantities=QUANTITIES)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    units = {column["name"]: column["unit"] for column in manifest["columns"]}
+    assert units["x"] == "m" and units["arm_joint_1"] == "rad"
+    first = 0
+    for part in manifest["parts"]:
+        path = folder / part["file"]
+        assert hashlib.sha256(path.read_bytes()).hexdigest() == part["sha256"]
+        table = parquet.read_table(path)
+        assert table.column_names == list(expected)
+        about = json.loads(table.schema.metadata[b"cylindroid"])
+        assert [column["name"] for column in about["columns"]] == list(expected)
+        for name, values in expected.items():
+            own = table[name].to_numpy()
+            assert np.array_equal(own, values[first : first + len(own)], equal_nan=own.dtype == float)
+        first += len(table)
+    assert first == 70_000
+    with pytest.raises(cy.InvalidOptionError, match="has a sweep already"):
+        cy.sweep(robot, samples=70_000, quantities=QUANTITIES, out=folder)
+    with pytest.raises(cy.InvalidOptionError, match="configurations.seed is 0 there and 1 now"):
+        cy.sweep(robot, samples=70_000, seed=1, quantities=QUANTITIES, out=folder, resume=True)
+    (folder / "part-000001.parquet").unlink()
+    again = cy.sweep(robot, samples=70_000, quantities=QUANTITIES, out=folder, resume=True)
+    assert again.computed == 70_000 - 65_536
+
+
+def test_files_of_other_programs(tmp_path):
+    """Compressed by Snappy, other columns beside those of the joints, in another order."""
+    import pyarrow
+
+    robot = cy.load("youbot")
+    found = cy.sweep(robot, samples=50, quantities=["pose"])
+    columns = {"time": np.arange(50), **{n: found[n] for n in reversed(robot.joint_names)}}
+    table = pyarrow.table(columns)
+    for compression in ("snappy", "none"):
+        path = tmp_path / f"{compression}.parquet"
+        parquet.write_table(table, path, compression=compression)
+        again = cy.sweep(robot, configurations=path, quantities=["pose"])
+        assert np.array_equal(again["x"], found["x"])
+    parquet.write_table(table, tmp_path / "zstd.parquet", compression="zstd")
+    with pytest.raises(cy.UnreadableFileError, match="Snappy"):
+        cy.sweep(robot, configurations=tmp_path / "zstd.parquet")
+    again = cy.sweep(robot, configurations=table, quantities=["pose"])
+    assert np.array_equal(again["x"], found["x"])
+
+
+def test_what_is_not_given(tmp_path):
+    robot = cy.load("panda")
+    with pytest.raises(cy.InvalidOptionError, match="one of samples, over and configurations"):
+        cy.sweep(robot)
+    with pytest.raises(cy.InvalidOptionError, match="resume"):
+        cy.sweep(robot, samples=10, resume=True)
+    with pytest.raises(cy.InvalidOptionError, match="loops"):
+        cy.sweep(cy.load("five-bar"), samples=10)
+    with pytest.raises(cy.UnknownNameError, match="yoshikawa"):
+        cy.sweep(robot, samples=10, quantities=["yoshikava"])
