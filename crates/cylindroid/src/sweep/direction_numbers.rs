@@ -2,7 +2,7 @@
 //!
 //! Source   Joe & Kuo 2008, file new-joe-kuo-6.21201, first 64 dimensions: the coefficients a of a
 //!          primitive polynomial over GF(2), whose degree is the number of the m_i beside it
-//! Checked  tests/sweep/sobol.rs::every_prefix_is_a_net, sobol.rs::first_points
+//! Checked  tests/sweep/sampling.rs::every_prefix_is_a_net
 //!
 //! Copyright (c) 2008, Frances Y. Kuo and Stephen Joe. All rights reserved.
 //!

@@ -6,7 +6,7 @@
 //!          a valid beginning. A resumed run computes the parts that are missing from the manifest
 //!          or do not have its checksum. Each thread holds one part, so memory does not grow with
 //!          the sweep
-//! Checked  tests/sweep/folder.rs, tests/cli/sweep.rs of the command line (killed processes)
+//! Checked  tests/sweep/folder.rs
 
 use std::cell::{Cell, RefCell};
 use std::fs::{self, File, OpenOptions, TryLockError};

@@ -1,6 +1,6 @@
 //! A sweep: a mechanism, configurations, quantities.
 //!
-//! Checked  tests/sweep
+//! Checked  tests/sweep/
 
 use std::ops::Range;
 

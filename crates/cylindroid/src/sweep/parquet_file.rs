@@ -4,7 +4,7 @@
 //!          do not compress, and a page is then a copy. Names are stored by dictionary
 //! Units    in the metadata `cylindroid` of the file: a JSON object with name, unit and description
 //!          of each column
-//! Checked  tests/sweep/folder.rs, tests/test_sweep.py of the Python package (pyarrow)
+//! Checked  tests/sweep/folder.rs
 
 use std::fs::File;
 use std::io::{self, Read, Write};
