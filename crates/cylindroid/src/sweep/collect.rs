@@ -6,7 +6,7 @@ use std::cell::Cell;
 use std::num::NonZeroUsize;
 
 use super::Progress;
-use super::options::Sweep;
+use super::job::Sweep;
 use super::parts::run_parts;
 use super::table::{Table, Values};
 use crate::error::Result;

@@ -15,8 +15,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::job::Sweep;
 use super::manifest::{self, Part, cannot_write, part_name};
-use super::options::Sweep;
 use super::parquet_file;
 use super::parts::run_parts;
 use crate::error::{Error, Result};

@@ -3,7 +3,7 @@
 //!
 //! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
-//! `parquet_file` (a part), `recipe` and `folder` (a sweep on disk, which can be stopped and
+//! `parquet_file` (a part), `job` (a whole sweep), `recipe` and `folder` (on disk, stopped and
 //! resumed).
 //!
 //! ```
@@ -25,6 +25,7 @@ mod collect;
 mod direction_numbers;
 mod evaluate;
 mod folder;
+mod job;
 mod manifest;
 mod options;
 mod parquet_file;
@@ -39,7 +40,8 @@ mod statistics;
 mod table;
 
 pub use folder::{Progress, Summary, WriteOptions};
-pub use options::{Sweep, SweepOptions, VelocityMetric};
+pub use job::Sweep;
+pub use options::{SweepOptions, VelocityMetric};
 pub use parquet_input::parquet_configurations;
 pub use quantity::Quantity;
 pub use source::{Axis, Source};

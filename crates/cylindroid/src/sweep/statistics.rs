@@ -7,7 +7,7 @@
 
 use std::num::NonZeroUsize;
 
-use super::options::Sweep;
+use super::job::Sweep;
 use super::parts::run_parts;
 use super::table::{Table, Values};
 use super::{Column, Progress};
