@@ -58,7 +58,7 @@ impl PySweepSummary {
 ///
 /// Parameters
 /// ----------
-/// robot : Mechanism
+/// mechanism : Mechanism
 ///     Samples and grids need one without loops.
 /// samples : int, optional
 ///     Number of points of a scrambled Sobol' sequence within the position limits; joints without
@@ -122,13 +122,13 @@ impl PySweepSummary {
 /// >>> list(found)[-3:]
 /// ['qy', 'qz', 'yoshikawa']
 #[pyfunction]
-#[pyo3(signature = (robot, samples = None, seed = 0, over = None, q = None, configurations = None,
+#[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None, configurations = None,
     quantities = None, frame = None, tool = None, task = None, metric = "unit", length = None,
     out = None, resume = false, threads = None))]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    robot: &PyMechanism,
+    #[pyo3(from_py_with = argument)] mechanism: PyRef<'py, PyMechanism>,
     #[pyo3(from_py_with = argument)] samples: Option<u64>,
     #[pyo3(from_py_with = argument)] seed: u64,
     #[pyo3(from_py_with = argument)] over: Option<Bound<'py, PyDict>>,
@@ -144,7 +144,8 @@ pub(crate) fn sweep<'py>(
     #[pyo3(from_py_with = argument)] resume: bool,
     #[pyo3(from_py_with = argument)] threads: Option<usize>,
 ) -> Result<Bound<'py, PyAny>> {
-    let mechanism = &robot.inner;
+    let robot = &*mechanism;
+    let mechanism = robot.inner.clone();
     let source = match (samples, over, configurations) {
         (Some(count), None, None) => Source::Samples { count, seed },
         (None, Some(over), None) => {
@@ -191,7 +192,7 @@ pub(crate) fn sweep<'py>(
     if resume && out.is_none() {
         return Err(Failure::option("resume", "True", "name the folder with out"));
     }
-    let sweep = Sweep::new(mechanism, options)?;
+    let sweep = Sweep::new(&mechanism, options)?;
     // Signals, Ctrl-C among them, are looked for a few times a second.
     let mut raised = None;
     let observe = |_: &Progress| {

@@ -2000,7 +2000,7 @@ def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...
 def sweep(
-    robot: Mechanism,
+    mechanism: Mechanism,
     samples: int | None = None,
     seed: int = 0,
     over: dict[str, tuple[float, float, int]] | None = None,
