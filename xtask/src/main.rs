@@ -11,6 +11,7 @@ mod instructions;
 mod layers;
 mod models;
 mod mutants;
+mod parquet;
 mod python;
 mod python_names;
 mod shell;
@@ -45,6 +46,8 @@ cargo xtask <task>
             crates/cylindroid-py/names.txt with another name or the reason why not
   vectors   regenerates the reference vectors from Pinocchio, MuJoCo, Clarabel and Qhull (needs
             Python and PyPI)
+  parquet   writes a sweep and reads it with pandas, polars, DuckDB and pyarrow (needs Python and
+            PyPI, 200 MB)
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]
             serves the viewer to 20 clients for a minute, and prints memory and lateness
@@ -103,6 +106,7 @@ fn run() -> Result<()> {
         Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
         Some("python-names") => python_names::check(),
         Some("vectors") => steps::vectors(),
+        Some("parquet") => parquet::check(),
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
         Some("deny") => deny::task(std::env::args().nth(2).as_deref()),

@@ -138,7 +138,7 @@ impl FromStr for Count {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let whole = |x: f64| (x >= 0.0 && x < 1e15 && x.fract() == 0.0).then_some(x);
+        let whole = |x: f64| ((0.0..1e15).contains(&x) && x.fract() == 0.0).then_some(x);
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
