@@ -9,19 +9,30 @@ use super::Progress;
 use super::job::Sweep;
 use super::parts::run_parts;
 use super::table::{Table, Values};
-use crate::error::Result;
+use crate::error::{Error, Result};
+
+/// Numbers at most: 16 GiB.
+const MOST: u64 = 1 << 31;
 
 impl Sweep {
     /// All rows, computed by several threads. `threads` and `observe` as in [`Sweep::write`]; `None`
     /// if `observe` stopped the run.
     ///
     /// # Errors
-    /// As [`Sweep::table`].
+    /// As [`Sweep::table`]; more than 2^31 numbers.
     pub fn collect(
         &self,
         threads: Option<NonZeroUsize>,
         mut observe: impl FnMut(&Progress) -> bool,
     ) -> Result<Option<Table>> {
+        let numbers = self.rows().saturating_mul(self.columns.len() as u64);
+        if numbers > MOST {
+            return Err(Error::InvalidOption {
+                option: "out",
+                value: String::new(),
+                reason: format!("{numbers} numbers are too many for memory; name a folder"),
+            });
+        }
         let mut parts: Vec<Option<Table>> = vec![None; self.parts()];
         let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
         let work = |part: usize| self.table(self.rows_of(part));

@@ -12,6 +12,9 @@ use super::table::{Column, Table};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 
+/// Parts at most: the manifest lists all of them.
+const MOST_PARTS: u64 = 10_000_000;
+
 /// A sweep of a mechanism: its rows can be computed in any order, anywhere.
 ///
 /// Results do not depend on the number of threads, nor on which rows are asked for together.
@@ -47,6 +50,10 @@ impl Sweep {
             }
         }
         let configurations = Configurations::new(mechanism, &options.source)?;
+        if configurations.rows.div_ceil(options.part_rows) > MOST_PARTS {
+            let reason = "the sweep has more than 10 000 000 parts; give parts more rows";
+            return refuse("part_rows", options.part_rows.to_string(), reason);
+        }
         let evaluator = Evaluator::new(mechanism, &options)?;
         let mut columns = vec![Column::count("index", "place in the sweep, from 0")];
         let coordinates = mechanism.coordinates().iter();

@@ -131,6 +131,11 @@ fn grids_have_their_last_axis_first() {
     assert!(refused(vec![axis("panda_joint1", 0.0, 1.0, 0)]).contains("one value"));
     assert!(refused(vec![axis("panda_joint1", 0.0, f64::NAN, 2)]).contains("not finite"));
     assert!(refused(vec![]).contains("one axis"));
+    let huge = || axis("panda_joint1", 0.0, 1.0, 1 << 45);
+    assert!(refused(vec![huge()]).contains("more than 10 000 000 parts"));
+    assert!(refused(vec![huge(), axis("panda_joint2", 0.0, 1.0, 9)]).contains("2^48"));
+    let many = of(&robot, grid(vec![axis("panda_joint1", 0.0, 1.0, 1 << 35)]), &[]);
+    assert!(many.collect(None, |_| true).unwrap_err().to_string().contains("too many for memory"));
     let two = axis("panda_joint1", 0.0, 1.0, 2);
     assert!(refused(vec![two.clone(), two]).contains("one axis only"));
 }
