@@ -1,5 +1,6 @@
 //! A sweep's folder in the programs that its users have: pandas, polars, DuckDB, pyarrow.
 
+use std::fs;
 use std::process::Command;
 
 use anyhow::Result;
@@ -14,9 +15,12 @@ const SCRIPT: &str = "xtask/parquet/readers.py";
 pub(crate) fn check() -> Result<()> {
     let python = environment(&root().join("target/parquet-venv"))?;
     pip(&python, &["-r", REQUIREMENTS])?;
-    let folder = tempfile::tempdir()?;
+    let folder = root().join("target/parquet-sweep");
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
     let sweep = ["run", "--quiet", "-p", "cylindroid-cli", "--", "sweep", "youbot"];
     let options = ["--samples", "1e5", "--quantities", "pose,jacobian,yoshikawa,gibson_hunt"];
-    run(cargo(&[&sweep[..], &options, &["--out"]].concat()).arg(folder.path()))?;
-    run(Command::new(python).arg(SCRIPT).arg(folder.path()))
+    run(cargo(&[&sweep[..], &options, &["--out"]].concat()).arg(&folder))?;
+    run(Command::new(python).arg(SCRIPT).arg(&folder))
 }
