@@ -42,6 +42,8 @@ OTHER_WORDS = {
     "G": "grasp matrix",
     "joint_metric": "joint weights",
     "radius": "a length",
+    "moment": "admittance",
+    "q": "start of the joint move",
 }
 
 

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use super::custom::Raised;
 use super::description::{Description, Named, moving_target};
 use crate::arrays::Numbers;
-use crate::error::{Failure, Result, argument, count};
+use crate::error::{Failure, Result, argument};
 
 /// A task of a `TaskServo` or a goal of `Mechanism.ik`: `FrameTask`, `RelativeFrameTask`, `CenterOfMassTask`, `GazeTask`,
 /// `PostureTask`, `JointVelocitiesTask`, `ManipulabilityTask`, `LimitAvoidanceTask` or `CustomTask`.
@@ -156,7 +156,7 @@ impl PyFrameTask {
         #[pyo3(from_py_with = argument)] components: &str,
         #[pyo3(from_py_with = argument)] axes: Option<String>,
         #[pyo3(from_py_with = argument)] name: Option<String>,
-        #[pyo3(from_py_with = count)] level: usize,
+        #[pyo3(from_py_with = argument)] level: usize,
         #[pyo3(from_py_with = argument)] weight: Option<f64>,
         #[pyo3(from_py_with = argument)] gain: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_position: Option<f64>,
@@ -219,7 +219,7 @@ impl PyRelativeFrameTask {
         reference_tool: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] components: &str,
         #[pyo3(from_py_with = argument)] name: Option<String>,
-        #[pyo3(from_py_with = count)] level: usize,
+        #[pyo3(from_py_with = argument)] level: usize,
         #[pyo3(from_py_with = argument)] weight: Option<f64>,
         #[pyo3(from_py_with = argument)] gain: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_position: Option<f64>,
@@ -274,7 +274,7 @@ impl PyCenterOfMassTask {
         velocity: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] axes: &str,
         #[pyo3(from_py_with = argument)] name: Option<String>,
-        #[pyo3(from_py_with = count)] level: usize,
+        #[pyo3(from_py_with = argument)] level: usize,
         #[pyo3(from_py_with = argument)] weight: Option<f64>,
         #[pyo3(from_py_with = argument)] gain: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_position: Option<f64>,
@@ -329,7 +329,7 @@ impl PyGazeTask {
         point: Numbers<'_>,
         tool: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] name: Option<String>,
-        #[pyo3(from_py_with = count)] level: usize,
+        #[pyo3(from_py_with = argument)] level: usize,
         #[pyo3(from_py_with = argument)] weight: Option<f64>,
         #[pyo3(from_py_with = argument)] gain: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
@@ -475,9 +475,9 @@ impl PyCustomTask {
         tolerance_orientation = None))]
     fn new(
         function: Bound<'_, PyAny>,
-        #[pyo3(from_py_with = count)] rows: usize,
+        #[pyo3(from_py_with = argument)] rows: usize,
         #[pyo3(from_py_with = argument)] name: Option<String>,
-        #[pyo3(from_py_with = count)] level: usize,
+        #[pyo3(from_py_with = argument)] level: usize,
         #[pyo3(from_py_with = argument)] weight: Option<f64>,
         #[pyo3(from_py_with = argument)] gain: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
