@@ -17,7 +17,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
-use self::mutant::Mutant;
+use self::mutant::{BUILD, Mutant};
 use crate::models;
 use crate::shell::{cargo, root, run as shell_run};
 
@@ -138,7 +138,7 @@ fn build(library: &Path, mutants: &mut Vec<Mutant>) -> Result<()> {
         }
         let output = cargo(&["check", "--package", "cylindroid", "--message-format", "short"])
             .current_dir(library)
-            .env("CARGO_TARGET_DIR", root().join("target"))
+            .env("CARGO_TARGET_DIR", root().join(BUILD))
             .output()?;
         if output.status.success() {
             return Ok(());

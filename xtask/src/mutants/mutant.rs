@@ -1,4 +1,7 @@
-//! A change of a file.
+//! A change of a file, and the place of its build.
+
+/// Programs of the copy: in `target` cargo would take them for those of the workspace.
+pub(super) const BUILD: &str = "target/mutants-build";
 
 /// A change of a file.
 #[derive(Debug, Clone)]

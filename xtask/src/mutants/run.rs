@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
-use super::mutant::Mutant;
+use super::mutant::{BUILD, Mutant};
 use crate::shell::{cargo, root};
 
 /// Test programs of the library, those of the mathematics first.
@@ -131,7 +131,7 @@ fn programs(copy: &Path) -> Result<Vec<PathBuf>> {
         let output =
             cargo(&[&["test", "--package", "cylindroid", "--no-run"], &which[..]].concat())
                 .current_dir(copy)
-                .env("CARGO_TARGET_DIR", root().join("target"))
+                .env("CARGO_TARGET_DIR", root().join(BUILD))
                 .output()?;
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         let line = text.lines().find(|line| line.contains("Executable"));

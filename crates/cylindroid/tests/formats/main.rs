@@ -4,6 +4,7 @@
 
 mod ablation;
 mod broken;
+mod carried_robots;
 mod catalogue;
 mod closed_file;
 mod closures;

@@ -95,10 +95,11 @@ pub(in crate::model) fn describe(
         world.builder.by_name();
     }
     world.arm(arm);
-    let own = world.placed();
-    robot::include(&file, &mut world, depth, loader)?;
-    let brought: Vec<String> = world.placed().into_iter().filter(|l| !own.contains(l)).collect();
     let joints = tree::joints(&file, planar)?;
+    let mut rest = joints.clone();
+    robot::include(&file, &mut world, &mut rest, depth, loader)?;
+    let brought: Vec<String> = world.placed();
+    let brought: Vec<String> = brought.into_iter().filter(|l| world.is_brought(l)).collect();
     let contacts = contact::contacts(&file, planar)?;
     let joined: Vec<&str> = joints.iter().flat_map(|j| j.between).collect();
     contact::check(&contacts, &world, &joined)?;
@@ -113,7 +114,7 @@ pub(in crate::model) fn describe(
         _ => None,
     };
     let reference_link = site.as_deref().or(reference);
-    tree::write(&mut world, &joints, &contacts, reference_link.map(|r| (r, point)))?;
+    tree::write(&mut world, &rest, &contacts, reference_link.map(|r| (r, point)))?;
     contact::write(&mut world, &contacts);
     body::write(&file, &mut world, &brought)?;
     collision::write(&file, &mut world)?;

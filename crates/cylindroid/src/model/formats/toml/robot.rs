@@ -5,11 +5,12 @@
 //! Formula  world_from_root = world_from_link base; home is the robot's start
 //! Why so   links, joints and frames of a robot get the prefix `name/`; those of a robot without a
 //!          name keep their names, so that joints and contacts can be added to an unchanged URDF
-//! Checked  tests/formats/closed_file.rs::robots_*
+//! Checked  tests/formats/closed_file.rs::robots_*, tests/formats/carried_robots.rs
 
 use std::path::Path;
 
 use super::names::GROUND;
+use super::tree::{self, JointEntry};
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
@@ -30,10 +31,12 @@ pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
     file.tables("robot", "[[robot]]", &KEYS)
 }
 
-/// Adds the robots, in the order of the file.
-pub(super) fn include(
-    file: &Table<'_>,
+/// Adds the robots, in the order of the file, and before a robot on a link of joints these joints,
+/// which are taken out of the list.
+pub(super) fn include<'t>(
+    file: &Table<'t>,
     world: &mut World<'_>,
+    joints: &mut Vec<JointEntry<'t>>,
     depth: usize,
     loader: Loader<'_>,
 ) -> Result<()> {
@@ -58,6 +61,11 @@ pub(super) fn include(
         }
         names.push(name);
         let robot = load(table, depth, loader)?;
+        if let Some(link) = table.string("link")?
+            && !world.has(link)
+        {
+            tree::write_up_to(world, joints, link)?;
+        }
         add(table, name, world, robot)?;
     }
     Ok(())

@@ -36,6 +36,7 @@ const KEYS: [&str; 10] =
     ["name", "type", "between", "origin", "axis", "axis2", "pitch", "actuated", "limits", "mimic"];
 
 /// A joint as read from the file.
+#[derive(Clone)]
 pub(super) struct JointEntry<'t> {
     table: Table<'t>,
     pub(super) name: &'t str,
@@ -123,6 +124,33 @@ pub(super) fn write<'t>(
         close(world, &joints[joint])?;
     }
     Ok(())
+}
+
+/// Writes the joints that connect a link with those that are placed, and all others that they
+/// reach, and takes them out of the list; links of robots that are still to come are not reached.
+pub(super) fn write_up_to<'t>(
+    world: &mut World<'_>,
+    joints: &mut Vec<JointEntry<'t>>,
+    link: &str,
+) -> Result<()> {
+    let mut reached: BTreeSet<&str> = BTreeSet::new();
+    let is_of_robot = |link: &str| link.contains('/') && !world.has(link);
+    let mut count = usize::MAX;
+    while count != reached.len() {
+        count = reached.len();
+        for joint in joints.iter().filter(|j| !j.between.into_iter().any(is_of_robot)) {
+            if joint.between.into_iter().any(|l| world.has(l) || reached.contains(l)) {
+                reached.extend(joint.between);
+            }
+        }
+    }
+    if !reached.contains(link) {
+        return Ok(());
+    }
+    let is_reached = |j: &JointEntry<'t>| j.between.into_iter().all(|l| reached.contains(l));
+    let (chosen, others) = std::mem::take(joints).into_iter().partition(is_reached);
+    *joints = others;
+    write(world, &chosen, &[], None)
 }
 
 /// The links that are connected by contacts alone, one for each connected component: the reference
