@@ -48,12 +48,12 @@ fn other_joints_keep_their_places() {
 [[robot]]
 name = "hand"
 model = "ur5e"
-link = "arm/tool0"
+link = "arm/link6"
 
 [[joint]]
 name = "brace"
 type = "spherical"
-between = ["carriage", "hand/wrist_1_link"]
+between = ["carriage", "hand/link4"]
 origin = [0.0, 0.0, 1.0]
 
 [[joint]]
@@ -65,8 +65,9 @@ axis = [1, 0, 0]
     );
     let cell = read_toml(&text).unwrap();
     assert_eq!(cell.n(), 13);
-    let loops: Vec<&str> = cell.loops().iter().map(|l| l.name.as_str()).collect();
-    assert_eq!(loops, ["second rail", "brace"]);
+    let mut loops: Vec<&str> = cell.loops().iter().map(|l| l.name.as_str()).collect();
+    loops.sort_unstable();
+    assert_eq!(loops, ["brace", "second rail"]);
 }
 
 #[test]
