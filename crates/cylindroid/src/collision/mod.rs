@@ -19,6 +19,7 @@ mod sampling;
 mod scene;
 mod separation;
 mod simplex;
+mod way;
 
 pub use body::Body;
 pub use distance::distance;

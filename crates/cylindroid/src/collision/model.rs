@@ -18,6 +18,7 @@ use super::options::CollisionOptions;
 use super::pairs;
 use super::sampling::drop_constant;
 use super::scene::{NearPair, Pair, Scene};
+use super::way::{levers_into, way};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::model::{Geometry, Ignored, Mechanism};
@@ -260,6 +261,28 @@ impl CollisionModel {
         moving: &mut [bool],
     ) {
         gradient_and_moving_into(state, near, row, moving);
+    }
+
+    /// Moves all bodies to a configuration, for [`CollisionModel::distance_of`].
+    pub(crate) fn place(&mut self, state: &State) {
+        self.scene.place(state);
+    }
+
+    /// The distance of a pair at the configuration of the last call (m); NaN where it is beyond what
+    /// numbers can represent.
+    pub(crate) fn distance_of(&mut self, pair: usize) -> f64 {
+        self.scene.evaluate(pair).map_or(f64::NAN, |near| near.distance)
+    }
+
+    /// A bound of the way of a body for small changes of the coordinates (m).
+    pub(crate) fn way(&self, state: &State, body: usize, change: &[f64]) -> f64 {
+        way(state, &self.scene.bodies[body], change)
+    }
+
+    /// The levers of the coordinates in the motion of the bodies of a pair relative to one another,
+    /// into `row` (n entries).
+    pub(crate) fn levers_into(&self, state: &State, pair: usize, row: &mut [f64]) {
+        levers_into(state, &self.scene.bodies, self.scene.pairs[pair], row);
     }
 
     /// The gradient of the distance of a near pair over all coordinates.

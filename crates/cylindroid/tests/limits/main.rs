@@ -53,3 +53,13 @@ fn no_limit_is_left() {
     violations.iter().take(50).for_each(|v| println!("{v}"));
     assert!(violations.is_empty(), "{} violations", violations.len());
 }
+
+/// Scenes in which rows of distances contradict one another: without a look at how braking would end,
+/// bodies come 0.1 to 1.4 mm into one another there.
+#[test]
+fn bodies_stay_apart_where_distances_contradict_one_another() {
+    for seed in [10619, 11498, 13338] {
+        let tally = rounds::run(Kind::Distances, seed);
+        assert!(tally.steps == 500 && tally.violations.is_empty(), "{:?}", tally.violations);
+    }
+}

@@ -3,8 +3,11 @@
 //!
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
 //! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
-//! (the levels, solved with `solver/hierarchy.rs`) and `simulation`.
+//! (the levels, solved with `solver/hierarchy.rs`), `braking` (what must stay possible after a step)
+//! and `simulation`.
 
+mod braking;
+mod braking_path;
 mod goals;
 mod gradient;
 mod levels;

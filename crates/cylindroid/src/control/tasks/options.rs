@@ -60,9 +60,10 @@ pub struct CollisionAvoidance {
     pub model: CollisionModel,
     /// Least distance (m).
     pub gap: f64,
-    /// Only pairs closer than this are considered (m), and of these the 64 closest. It must exceed
+    /// Only pairs closer than this bend the motion (m), and of these the 64 closest. It should exceed
     /// the distance in which a pair stops: where joints are fast and accelerate slowly, a pair that
-    /// comes into view at a smaller one cannot brake before it touches.
+    /// comes into view at a smaller one leaves only braking, which in a tree ends before it touches;
+    /// a closed chain may not brake in time.
     pub margin: f64,
 }
 

@@ -1,11 +1,12 @@
-//! The inequalities of a step: limits of all joints, pairs of bodies, half-spaces.
+//! The inequalities of a step: limits of all joints, pairs of bodies, half-spaces; and the velocities
+//! that its lowest level approaches.
 //!
 //! Formula  limits `control/servo/limits.rs`; of pairs and half-spaces g q' >= -v(d - c), v the velocity
 //!          from which the joints stop within half of d - c, c = (dt sum |q'|)^2 L / 2 a bound of the
 //!          second-order change in a step; g q' >= (c - d) / dt where d < c
 //! Checked  tests/it/servo/tasks.rs, tests/it/servo/task_kinds.rs
 
-use super::options::MOST_PAIRS;
+use super::options::{MOST_PAIRS, MotionTask};
 use super::task_servo::TaskServo;
 use crate::control::servo::{JointState, stopping_velocity};
 use crate::error::Result;
@@ -123,5 +124,18 @@ impl TaskServo {
         let row = self.motions.limit_rows() + place;
         self.set.inequalities.set_row(row, |_| 0.0);
         self.set.inequalities.lower[self.limits.len() + place] = f64::NEG_INFINITY;
+    }
+
+    /// The unknowns of desired velocities of the lowest level.
+    pub(super) fn load_desired(&mut self) {
+        self.lowest_velocities.fill(0.0);
+        let lowest = |task: &MotionTask| task.objective.is_of_lowest_level();
+        let sum: f64 = self.tasks.iter().filter(|t| lowest(t)).map(|task| task.weight).sum();
+        let all = self.tasks.iter().zip(&mut self.gradients);
+        for (task, gradient) in all.filter(|(task, _)| lowest(task)) {
+            let (share, out) = ((task.gain, task.weight / sum), &mut self.lowest_velocities);
+            task.objective.add_velocities(&self.state, gradient.as_mut(), share, out);
+        }
+        self.motions.unknowns_of(&self.lowest_velocities, &mut self.desired);
     }
 }

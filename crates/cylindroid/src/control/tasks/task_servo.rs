@@ -4,7 +4,8 @@
 //!          free, its tasks scaled along their directions before they are bent (`solver/hierarchy.rs`); last the
 //!          joint velocities nearest to the postures. Inequalities stand above all levels:
 //!          position, velocity and acceleration limits (`limits.rs`), and for every near pair of
-//!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance
+//!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance;
+//!          and braking from any velocity ends without contact (`braking.rs`)
 //! Shapes   n joint velocities, the sum of the tasks' rows
 //! Units    rows of lengths are divided by the characteristic length
 //! Valid    trees and closed chains: arms, hands, several arms, mobile and floating bases, objects
@@ -16,6 +17,7 @@
 //! Source   Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987 (velocity dampers)
 //! Checked  tests/it/servo/tasks.rs, tests/allocation.rs
 
+use super::braking_path::BrakingPath;
 use super::gradient::Gradient;
 use super::levels::{Member, Stack, TaskRows};
 use super::motions::Motions;
@@ -89,7 +91,7 @@ pub struct TaskServo {
     pub(super) stacks: Vec<Stack>,
     pub(super) set: ActiveSet,
     /// Memory for the gradients of tasks.
-    gradients: Vec<Option<Gradient>>,
+    pub(super) gradients: Vec<Option<Gradient>>,
     pub(super) motions: Motions,
     /// Of the coordinates, then of actuated loop joints.
     pub(super) limits: Vec<Limits>,
@@ -112,8 +114,9 @@ pub struct TaskServo {
     pub(super) lowest_stopped_by: Option<StoppedBy>,
     pub(super) rates: Vec<f64>,
     /// Of the step before, and those that tasks of the lowest level ask for.
-    before: Vec<f64>,
-    lowest_velocities: Vec<f64>,
+    pub(super) before: Vec<f64>,
+    pub(super) braking: BrakingPath,
+    pub(super) lowest_velocities: Vec<f64>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
     last_targets: Vec<Vec<f64>>,
@@ -221,6 +224,7 @@ impl TaskServo {
             lowest_stopped_by: None,
             rates: vec![0.0; v],
             before: vec![0.0; v],
+            braking: BrakingPath::new(mechanism, capacity)?,
             lowest_velocities: vec![0.0; n],
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
@@ -256,6 +260,7 @@ impl TaskServo {
 
     /// The collision model, to add, move and remove obstacles while the servo runs.
     pub fn collision_model_mut(&mut self) -> Option<&mut CollisionModel> {
+        self.braking.reset();
         self.options.collisions.as_mut().map(|c| &mut c.model)
     }
 
@@ -311,6 +316,7 @@ impl TaskServo {
     /// Resets the servo to rest: it is as a new one with the present tasks.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
+        self.braking.reset();
         if let Some(predictor) = &mut self.predictor {
             predictor.reset();
         }
@@ -404,19 +410,6 @@ impl TaskServo {
         &self.near
     }
 
-    /// The unknowns of desired velocities of the lowest level.
-    fn load_desired(&mut self) {
-        self.lowest_velocities.fill(0.0);
-        let lowest = |task: &MotionTask| task.objective.is_of_lowest_level();
-        let sum: f64 = self.tasks.iter().filter(|t| lowest(t)).map(|task| task.weight).sum();
-        let all = self.tasks.iter().zip(&mut self.gradients);
-        for (task, gradient) in all.filter(|(task, _)| lowest(task)) {
-            let (share, out) = ((task.gain, task.weight / sum), &mut self.lowest_velocities);
-            task.objective.add_velocities(&self.state, gradient.as_mut(), share, out);
-        }
-        self.motions.unknowns_of(&self.lowest_velocities, &mut self.desired);
-    }
-
     /// Stores the joint velocities, within the limits to the last bit.
     fn store(&mut self) -> Result<BrakingState> {
         let before = &mut self.before;
@@ -435,6 +428,7 @@ impl TaskServo {
             }
             self.lowest_stopped_by = Some(StoppedBy::TypeII);
         }
+        self.keep_braking_clear()?;
         let mut braking = BrakingState::default();
         for (i, rate) in self.rates.iter().enumerate() {
             let speed = rate.abs();

@@ -1,5 +1,6 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
+mod braking_path;
 mod closed_tasks;
 mod condition;
 mod edge;

@@ -412,7 +412,7 @@ fn bodies_keep_their_distance() {
     }
     let robot = builder.build().unwrap();
     let mut random = Random(4);
-    let mut stops = 0;
+    let (mut stops, mut parting) = (0, 0);
     for round in 0..12 {
         let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
         let ball = Geometry::Sphere { radius: 0.15 };
@@ -434,12 +434,17 @@ fn bodies_keep_their_distance() {
             servo.step(&q).unwrap();
             if let Some(StoppedBy::Distance { pair }) = servo.reports()[0].stopped_by {
                 stops += 1;
-                // It is near, and comes no nearer than braking allows.
+                // It is near, and comes no nearer than braking allows. It may move away where braking
+                // from a faster motion would have brought it back.
                 let near = servo.near().iter().find(|near| near.pair == pair).unwrap();
                 let gradient = model.gradient(&robot.state(&q).unwrap(), near);
                 let parts = gradient.iter().zip(servo.joint_velocities());
                 let rate = parts.map(|(g, v)| g * v).sum::<f64>();
-                assert!(near.distance < 0.3 && rate < 1e-9, "round {round}: {near:?} at {rate}");
+                let acceleration = 10.0 * gradient.iter().map(|g| g.abs()).sum::<f64>();
+                let slowest = -(2.0 * acceleration * (near.distance - gap).max(0.0)).sqrt();
+                let is_slow = rate > slowest - 1e-3;
+                assert!(near.distance < 0.3 && is_slow, "round {round}: {near:?} at {rate}");
+                parting += usize::from(rate > 1e-9);
             }
             servo.advance(&mut q);
             if step % 10 == 0 {
@@ -455,7 +460,7 @@ fn bodies_keep_their_distance() {
             }
         }
     }
-    assert!(stops > 100, "{stops}");
+    assert!(stops > 100 && parting * 100 < stops, "{stops}, {parting} of them parting");
 }
 
 /// What defines no controller is refused, with its name.

@@ -1,0 +1,75 @@
+//! Braking without contact: velocities are commanded only if braking from them ends with all bodies
+//! apart.
+//!
+//! Formula  v, then its mean with braking b from the last step, then b: the first of them whose
+//!          braking path is clear (`braking_path.rs`). That of b is the rest of one that was looked
+//!          at a step before
+//! Valid    trees that move as commanded, from a start at rest with all bodies apart, among obstacles
+//!          that rest. Where no path is clear, the velocities of the solver stand
+//! Source   Fraichard & Asama, Inevitable collision states, Advanced Robotics 18 (2004), 1001-1024
+//! Checked  tests/it/servo/braking_path.rs, tests/limits/main.rs
+
+use super::braking_path::{Motion, Start};
+use super::options::StoppedBy;
+use super::task_servo::TaskServo;
+use crate::error::Result;
+
+/// Shares of the velocities of the solver, the rest braking, that are tried in turn [-].
+const SHARES: [f64; 3] = [1.0, 0.5, 0.0];
+
+impl TaskServo {
+    /// Replaces the joint velocities of this step, if no braking after them is clear.
+    pub(super) fn keep_braking_clear(&mut self) -> Result<()> {
+        let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
+        let (dt, path, state) = (self.options.dt, &mut self.braking, &self.state);
+        if self.motions.limit_rows() > 0 || state.q().is_empty() {
+            return Ok(()); // of a closed chain
+        }
+        let start = Start { state, near: &self.near, margin: collisions.margin };
+        let off = path.expected.iter_mut().zip(state.q());
+        off.for_each(|(expected, q)| *expected -= q);
+        let bodies = 0..collisions.model.bodies().len();
+        let off = bodies.map(|b| collisions.model.way(state, b, &path.expected));
+        let is_expected = path.is_clear && off.fold(0.0, f64::max) <= 0.5 * collisions.gap;
+        let (mut accepted, mut contact) = (None, None);
+        for share in SHARES {
+            let mut velocities = std::mem::take(&mut path.velocities);
+            for (i, v) in velocities.iter_mut().enumerate() {
+                let (before, solved) = (self.before[i], self.rates[i]);
+                let less = (before.abs() - self.limits[i].acceleration * dt).max(0.0);
+                let braking = self.bounds[i].clamp(less.copysign(before));
+                *v = braking + share * (solved - braking);
+            }
+            let motion = Motion { velocities: &velocities, limits: &self.limits, dt };
+            let found = if share == 0.0 && is_expected {
+                Ok(None)
+            } else {
+                path.contact(start, &mut collisions.model, motion)
+            };
+            path.velocities = velocities;
+            match found? {
+                None => {
+                    accepted = Some(share);
+                    break;
+                }
+                Some(pair) => contact = contact.or(Some(pair)),
+            }
+        }
+        path.is_clear = accepted.is_some();
+        let solved = &mut self.rates[..path.velocities.len()];
+        if let (Some(share), Some(pair)) = (accepted, contact) {
+            solved.copy_from_slice(&path.velocities);
+            let stop = Some(StoppedBy::Distance { pair });
+            for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
+                member.scale *= share;
+                member.stopped_by = member.stopped_by.or(stop);
+            }
+            self.lowest_stopped_by = self.lowest_stopped_by.or(stop);
+            self.motions.unknowns_of(&self.rates, &mut self.last);
+        }
+        path.expected.copy_from_slice(state.q());
+        let commanded = &self.rates[..path.expected.len()];
+        state.mechanism().integrate_in_place(&mut path.expected, commanded, dt);
+        Ok(())
+    }
+}
