@@ -89,7 +89,8 @@ integrated by the library itself. Every task takes its whole error away in one s
 and pink, 1/dt here), in one level with weight 1 for metres and radians; a posture has the cost 1e-3
 beside them, here it is the lowest level. Limits are positions and speeds of the joints; none has
 acceleration limits. mink and pink use the solver that fails least and is fastest, of daqp, quadprog
-and proxqp, for each robot. A second row of this library puts the feet first, then the centre of
+and proxqp, for each robot. A second row of this library takes least squares where limits stop a task
+(`keep_directions=False`), a third puts the feet first, then the centre of
 mass, then each frame on a level of its own; the last row, where all targets are poses, jumps to a
 solution of the inverse kinematics in every step, without a servo.
 

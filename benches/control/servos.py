@@ -38,6 +38,7 @@ class Servo:
 
 class Cylindroid(Servo):
     name = "cylindroid"
+    keep_directions = True
 
     def build(self):
         self.robot = cy.load(self.scenario.urdf)
@@ -63,7 +64,8 @@ class Cylindroid(Servo):
             com = cy.CenterOfMassTask(motion.com[0], gain=gain, name="com", level=level["com"])
             tasks.append(com)
         tasks.append(cy.PostureTask(self.q.copy(), gain=POSTURE_GAIN))
-        self.servo = cy.Servo(self.robot, tasks=tasks, dt=self.dt, length=1.0)
+        self.servo = cy.TaskServo(self.robot, tasks, dt=self.dt, length=1.0,
+                                  keep_directions=self.keep_directions)
         self.targets = [{} for _ in motion.times]
         for f, targets in self.moving(motion):
             for k, target in enumerate(targets):
@@ -97,6 +99,13 @@ class Levels(Cylindroid):
         order = [[f for f in self.frames if f in self.scenario.still], ["com"]]
         order += [[f] for f in self.frames if f not in self.scenario.still]
         return {f: i for i, together in enumerate(order) for f in together}
+
+
+class LeastSquares(Cylindroid):
+    """What limits stop is bent at once, as the others do."""
+
+    name = "cylindroid, least squares"
+    keep_directions = False
 
 
 class Solutions(Cylindroid):
@@ -266,7 +275,7 @@ class Placo(Servo):
         return self.judge.positions([self.robot.get_joint(n) for n in self.judge.names], base)
 
 
-ALL = [Cylindroid, Levels, Mink, Pink, Placo, Solutions]
+ALL = [Cylindroid, LeastSquares, Levels, Mink, Pink, Placo, Solutions]
 
 
 def can(kind, scenario):

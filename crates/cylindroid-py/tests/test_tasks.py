@@ -391,6 +391,23 @@ def test_servo_with_tasks_is_one_of_many():
         cy.Servo(ROBOT, collisions=cy.CollisionAvoidance(model))
 
 
+def test_least_squares_come_nearer_than_a_kept_direction():
+    slow = {"left0_joint": {"velocity": 0.01}}
+    goal = moved("left6", [0.1, 0.1, 0.1])
+    errors = []
+    for keep in (True, False):
+        servo = cy.TaskServo(ROBOT, [cy.FrameTask("left6", goal, components="position")], limits=slow,
+                             keep_directions=keep)
+        q = BENT
+        for _ in range(500):
+            servo.step(q)
+            q = servo.advance(q)
+        errors.append(next(iter(servo.reports.values())).position_error)
+    assert errors[1] < 0.9 * errors[0]
+    with pytest.raises(cy.ArgumentTypeError, match="keep_directions"):
+        cy.TaskServo(ROBOT, [], keep_directions="yes")
+
+
 def test_no_tasks_are_rest():
     servo = cy.TaskServo(ROBOT, [])
     assert not servo.step(BENT).any() and servo.status == "reached"

@@ -29,6 +29,11 @@ pub(crate) struct TasksArgs {
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) margin: Option<f64>,
 
+    /// Where limits or distances stop a task, least squares of what is missed in place of a motion
+    /// that is shortened and keeps its direction: smaller errors, off the line
+    #[arg(long)]
+    pub(crate) least_squares: bool,
+
     #[command(flatten)]
     pub(crate) collision: CollisionArgs,
 }

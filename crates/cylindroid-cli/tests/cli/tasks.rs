@@ -143,6 +143,23 @@ fn obstacles_are_avoided() {
     assert!(table.contains("ball") && table.contains("not reached"), "{table}");
 }
 
+/// The hand of an arm whose joints are partly slow is nearer to its target after the same time.
+#[test]
+fn least_squares_come_nearer_than_a_kept_direction() {
+    let folder = tempfile::tempdir().unwrap();
+    let limits = folder.path().join("limits.toml");
+    let slow = [1, 3, 5].map(|i| format!("[panda_joint{i}]\nvelocity = 0.02\n"));
+    fs::write(&limits, slow.concat()).unwrap();
+    let limits = ["--limits", limits.to_str().unwrap(), "--time-limit", "1"];
+    let to = ["move", CELL, "--task", "hand_tcp=0.2,0.45,0.3"];
+    let error = |more: &[&str]| {
+        let answer = json(&[&to[..], &limits, more].concat(), 1);
+        answer["tasks"][0]["position_error"].as_f64().unwrap()
+    };
+    let (kept, least) = (error(&[]), error(&["--least-squares"]));
+    assert!(least < 0.95 * kept, "{least} {kept}");
+}
+
 #[test]
 fn files_hold_every_step_of_all_tasks() {
     let folder = tempfile::tempdir().unwrap();
@@ -206,6 +223,7 @@ fn what_has_no_effect_is_refused() {
     for (more, message) in [
         (&["--gap", "0.1"][..], "--gap has no effect without --avoid"),
         (&["--samples", "9"], "--samples has no effect"),
+        (&["--least-squares"], "--least-squares has no effect on the servo of one frame"),
         (&["--avoid", "--line"], "--line belongs to the servo of one frame"),
         (&["--avoid", "--inverse", "damped"], "--inverse belongs to"),
         (&["--avoid", "--damping", "0.1"], "--damping belongs to"),

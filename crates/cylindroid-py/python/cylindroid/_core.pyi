@@ -1818,6 +1818,7 @@ class TaskServo:
         delay: float | None = None,
         time_constant: float | None = None,
         noise: float | None = None,
+        keep_directions: bool | None = None,
         eps: float | None = None,
     ) -> TaskServo: ...
     @property

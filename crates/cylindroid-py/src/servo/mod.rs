@@ -280,7 +280,9 @@ impl PyServo {
                     return Err(Failure::option("joint_weights", name, reason));
                 }
             };
-            let numbers = TaskServoNumbers { dt, length, acceleration, eps: None, plant };
+            let (eps, keep_directions) = (None, None);
+            let numbers =
+                TaskServoNumbers { dt, length, acceleration, eps, keep_directions, plant };
             let collisions = collisions.as_ref().map(Py::get);
             let servo = PyTaskServo::make(py, robot, (&tasks, collisions), &[], weights, numbers)?;
             return Ok(Bound::new(py, servo)?.into_any());

@@ -21,7 +21,7 @@ use crate::options;
 /// Tasks of level 0 come first; a level moves on what the levels before it leave free, and tasks of
 /// one level share it by their weights. Position, velocity and acceleration limits and distances to
 /// other bodies stand above all levels. A task that they stop is scaled along its direction first; its
-/// direction changes only if no scale is feasible. For arms, hands, several arms, mobile and
+/// direction changes only if no scale is feasible, or at once with `keep_directions=False`. For arms, hands, several arms, mobile and
 /// floating bases, and closed chains, of which the actuated joints are the unknowns.
 ///
 /// Parameters
@@ -45,6 +45,10 @@ use crate::options;
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
 /// delay, time_constant, noise : float, optional
 ///     Of the robot, see `Servo` (s, s, rad or m). Default: 0.
+/// keep_directions : bool, optional
+///     Where limits and distances stop a task: True shortens its velocity as long as a share of it is
+///     feasible, so that the tool stays on its line; False takes the least squares of what the tasks
+///     of the level miss, which leaves smaller errors. Default: True.
 /// eps : float, optional
 ///     Directions of a level with singular values below this share of its norm are left out.
 ///     Default: 1e-3.
@@ -140,13 +144,14 @@ impl Running {
     }
 }
 
-/// Options that are numbers; those that are not given have the library's defaults.
+/// Options that are numbers or flags; those that are not given have the library's defaults.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TaskServoNumbers {
     pub(crate) dt: Option<f64>,
     pub(crate) length: Option<f64>,
     pub(crate) acceleration: Option<f64>,
     pub(crate) eps: Option<f64>,
+    pub(crate) keep_directions: Option<bool>,
     pub(crate) plant: Plant,
 }
 
@@ -165,6 +170,7 @@ impl PyTaskServo {
         set(&mut chosen.length, numbers.length);
         set(&mut chosen.acceleration, numbers.acceleration);
         set(&mut chosen.eps, numbers.eps);
+        chosen.keep_directions = numbers.keep_directions.unwrap_or(chosen.keep_directions);
         chosen.plant = numbers.plant;
         if let Some(weights) = &joint_weights {
             chosen.joint_weights = weights.vector("joint_weights")?.to_vec();
@@ -201,7 +207,7 @@ impl PyTaskServo {
     #[new]
     #[pyo3(signature = (mechanism, tasks, collisions = None, *, half_spaces = None, limits = None,
         dt = None, length = None, joint_weights = None, acceleration = None, delay = None,
-        time_constant = None, noise = None, eps = None))]
+        time_constant = None, noise = None, keep_directions = None, eps = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         py: Python<'_>,
@@ -217,10 +223,11 @@ impl PyTaskServo {
         #[pyo3(from_py_with = argument)] delay: Option<f64>,
         #[pyo3(from_py_with = argument)] time_constant: Option<f64>,
         #[pyo3(from_py_with = argument)] noise: Option<f64>,
+        #[pyo3(from_py_with = argument)] keep_directions: Option<bool>,
         #[pyo3(from_py_with = argument)] eps: Option<f64>,
     ) -> Result<Self> {
         let plant = options::plant(delay, time_constant, noise);
-        let numbers = TaskServoNumbers { dt, length, acceleration, eps, plant };
+        let numbers = TaskServoNumbers { dt, length, acceleration, eps, keep_directions, plant };
         let limited = match &limits {
             None => mechanism.inner.clone(),
             Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,

@@ -35,6 +35,8 @@ pub struct CollisionModel {
     ignored: Vec<Ignored>,
     /// Of the obstacles: from the pose that the user gives to that of the core.
     shape_from_body: Vec<Pose>,
+    /// Number of changes of the obstacles so far.
+    revision: u64,
 }
 
 impl CollisionModel {
@@ -100,6 +102,7 @@ impl CollisionModel {
             scene,
             ignored,
             shape_from_body: Vec::new(),
+            revision: 0,
         })
     }
 
@@ -181,6 +184,7 @@ impl CollisionModel {
             mask: u32::MAX,
         };
         self.shape_from_body.push(shape_from_body);
+        self.revision += 1;
         self.scene.add(obstacle);
         Ok(())
     }
@@ -194,6 +198,7 @@ impl CollisionModel {
         let index = self.obstacle(name)?;
         let pose = world_from_shape * self.shape_from_body[index - self.links];
         self.scene.bodies[index].slot_from_body = pose;
+        self.revision += 1;
         Ok(())
     }
 
@@ -205,6 +210,7 @@ impl CollisionModel {
         let index = self.obstacle(name)?;
         self.scene.remove(index);
         self.shape_from_body.remove(index - self.links);
+        self.revision += 1;
         Ok(())
     }
 
@@ -261,6 +267,11 @@ impl CollisionModel {
         moving: &mut [bool],
     ) {
         gradient_and_moving_into(state, near, row, moving);
+    }
+
+    /// Number of changes of the obstacles so far.
+    pub(crate) const fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// Moves all bodies to a configuration, for [`CollisionModel::distance_of`].

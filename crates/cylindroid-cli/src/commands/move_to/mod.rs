@@ -43,6 +43,12 @@ pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow:
     if let Some(option) = args.tasks.without_effect() {
         anyhow::bail!("{option} has no effect without --avoid or --obstacle");
     }
+    if args.tasks.least_squares {
+        anyhow::bail!(
+            "--least-squares has no effect on the servo of one frame: add --tasks, --task \
+             FRAME=..., --avoid or --obstacle"
+        );
+    }
     let job = Job::new(args)?;
     let format = args.out.as_deref().map(trajectory::format_of).transpose()?;
     if let Some(path) = &args.plot {

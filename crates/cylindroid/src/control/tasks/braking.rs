@@ -26,11 +26,6 @@ impl TaskServo {
             return Ok(()); // of a closed chain
         }
         let start = Start { state, near: &self.near, margin: collisions.margin };
-        let off = path.expected.iter_mut().zip(state.q());
-        off.for_each(|(expected, q)| *expected -= q);
-        let bodies = 0..collisions.model.bodies().len();
-        let off = bodies.map(|b| collisions.model.way(state, b, &path.expected));
-        let is_expected = path.is_clear && off.fold(0.0, f64::max) <= 0.5 * collisions.gap;
         let (mut accepted, mut contact) = (None, None);
         for share in SHARES {
             let mut velocities = std::mem::take(&mut path.velocities);
@@ -41,7 +36,7 @@ impl TaskServo {
                 *v = braking + share * (solved - braking);
             }
             let motion = Motion { velocities: &velocities, limits: &self.limits, dt };
-            let found = if share == 0.0 && is_expected {
+            let found = if share == 0.0 && path.is_continued(state, collisions) {
                 Ok(None)
             } else {
                 path.contact(start, &mut collisions.model, motion)
@@ -67,6 +62,7 @@ impl TaskServo {
             self.lowest_stopped_by = self.lowest_stopped_by.or(stop);
             self.motions.unknowns_of(&self.rates, &mut self.last);
         }
+        path.revision = collisions.model.revision();
         path.expected.copy_from_slice(state.q());
         let commanded = &self.rates[..path.expected.len()];
         state.mechanism().integrate_in_place(&mut path.expected, commanded, dt);

@@ -11,7 +11,7 @@
 //! Source   Fraichard & Asama, Inevitable collision states, Advanced Robotics 18 (2004), 1001-1024
 //! Checked  tests/it/servo/braking_path.rs, tests/allocation.rs
 
-use super::options::MOST_PAIRS;
+use super::options::{CollisionAvoidance, MOST_PAIRS};
 use crate::collision::{CollisionModel, NearPair};
 use crate::error::Result;
 use crate::kinematics::State;
@@ -30,6 +30,8 @@ pub(super) struct BrakingPath {
     /// True if the path of the last velocities is clear, after a step that ends at `expected`.
     pub(super) is_clear: bool,
     pub(super) expected: Vec<f64>,
+    /// Of the obstacles.
+    pub(super) revision: u64,
     /// A configuration of the path, and changes of the coordinates up to it and to a later one.
     state: State,
     q: Vec<f64>,
@@ -87,6 +89,7 @@ impl BrakingPath {
         Ok(Self {
             is_clear: false,
             expected: vec![0.0; n],
+            revision: 0,
             state: mechanism.state(mechanism.home())?,
             q: vec![0.0; n],
             change: vec![0.0; n],
@@ -101,6 +104,17 @@ impl BrakingPath {
     /// Forgets the last path.
     pub(super) const fn reset(&mut self) {
         self.is_clear = false;
+    }
+
+    /// True if the last path was clear, the obstacles are the same, and the robot is where it was to
+    /// be: no body is off by more than half of the gap.
+    pub(super) fn is_continued(&mut self, state: &State, collisions: &CollisionAvoidance) -> bool {
+        let model = &collisions.model;
+        let off = self.change.iter_mut().zip(&self.expected).zip(state.q());
+        off.for_each(|((off, expected), q)| *off = q - expected);
+        let mut ways = (0..model.bodies().len()).map(|b| model.way(state, b, &self.change));
+        let is_same = self.is_clear && self.revision == model.revision();
+        is_same && ways.all(|way| way <= 0.5 * collisions.gap)
     }
 
     /// The pair that the path of these velocities may bring together.

@@ -104,6 +104,10 @@ pub struct TaskServoOptions {
     pub acceleration: f64,
     /// The lag, the delay and the noise of the robot.
     pub plant: Plant,
+    /// Where limits and distances stop a task: true to shorten its velocity as long as a share of it
+    /// is feasible, so that its tool stays on its line; false for the least squares of what all tasks
+    /// of its level miss, which leaves smaller errors.
+    pub keep_directions: bool,
     /// Directions of a level with singular values below this share of its norm are left out [-].
     pub eps: f64,
     /// Distances to keep.
@@ -113,7 +117,8 @@ pub struct TaskServoOptions {
 }
 
 impl TaskServoOptions {
-    /// 1 kHz, the characteristic length of the mechanism, no weights, an ideal robot, no collisions.
+    /// 1 kHz, the characteristic length of the mechanism, no weights, an ideal robot, directions kept, no
+    /// collisions.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         Self {
@@ -122,6 +127,7 @@ impl TaskServoOptions {
             joint_weights: Vec::new(),
             acceleration: f64::INFINITY,
             plant: Plant::IDEAL,
+            keep_directions: true,
             eps: tolerance::TRUNCATION,
             collisions: None,
             half_spaces: Vec::new(),

@@ -1,5 +1,5 @@
-//! The stack of levels: each task is scaled along its direction; where no scale is feasible, its
-//! direction is changed, on what the others of its level leave.
+//! The stack of levels: each task is scaled along its direction; where no scale is feasible, or
+//! directions are not to be kept, its direction is changed, on what the others of its level leave.
 //!
 //! Formula  `solver/hierarchy.rs`; directions changed, of all such tasks of a level at once:
 //!          min |A y - b|^2 + d |y|^2, d = k |error| of the task with the largest error, k and its
@@ -16,7 +16,7 @@ use crate::control::solver::active_set::{FEASIBLE, Level};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::saturation::{CURVATURE, LEAST_DAMPING, MIN_SCALE, STRAIGHT};
-use crate::linalg::norm;
+use crate::linalg::{dot, norm};
 
 /// Tasks that miss less than this share of their velocity are realised as a whole [-].
 const WHOLE: f64 = 1e-9;
@@ -30,10 +30,11 @@ impl TaskServo {
     pub(super) fn solve(&mut self) {
         let mut rounds = 1;
         for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
-            (member.direction_changed, member.stopped_by) = (false, None);
+            member.direction_changed = !self.options.keep_directions;
+            member.stopped_by = None;
             rounds += 1;
         }
-        for _ in 0..rounds {
+        for round in 0..rounds {
             if !self.start() {
                 // Limits contradict one another.
                 for stack in &mut self.stacks {
@@ -44,7 +45,7 @@ impl TaskServo {
                 self.lowest_stopped_by = None;
                 return;
             }
-            if self.solve_levels() {
+            if self.solve_levels(round == 0) {
                 break;
             }
         }
@@ -99,8 +100,8 @@ impl TaskServo {
         self.set.start(&self.last)
     }
 
-    /// False if tasks were found whose directions must change.
-    fn solve_levels(&mut self) -> bool {
+    /// False if tasks were found whose directions must change; in the first round none was yet.
+    fn solve_levels(&mut self, is_first: bool) -> bool {
         let length = self.options.length;
         for stack in &mut self.stacks {
             let Stack { members, level, turned, left_out } = stack;
@@ -121,8 +122,8 @@ impl TaskServo {
                 }
                 member.error = error.sqrt();
             }
-            let any_changed = members.iter().any(|m| m.direction_changed);
-            if !any_changed && self.set.solve_freely(whole, self.options.eps) {
+            let is_whole = is_first || members.iter().all(|m| !m.direction_changed);
+            if is_whole && self.set.solve_freely(whole, self.options.eps) {
                 members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (1.0, None));
                 *left_out = 0.0;
                 continue;
@@ -162,9 +163,22 @@ impl TaskServo {
                 // Inequalities across the target stop only this solution.
                 member.stopped_by = stop.or(member.stopped_by);
             }
+            if !self.options.keep_directions {
+                let left = turned.left(self.set.point());
+                for member in &mut *members {
+                    let rows = member.rows.clone();
+                    member.scale = share(&level.whole.target[rows.clone()], &left[rows]);
+                }
+            }
         }
         true
     }
+}
+
+/// The share of a target that is realised along it, from what is left of it.
+fn share(target: &[f64], left: &[f64]) -> f64 {
+    let size = dot(target, target);
+    if size > 0.0 { (1.0 - dot(target, left) / size).max(0.0) } else { 1.0 }
 }
 
 /// The rows and targets of the tasks whose directions are changed, into `turned`.

@@ -260,7 +260,6 @@ impl TaskServo {
 
     /// The collision model, to add, move and remove obstacles while the servo runs.
     pub fn collision_model_mut(&mut self) -> Option<&mut CollisionModel> {
-        self.braking.reset();
         self.options.collisions.as_mut().map(|c| &mut c.model)
     }
 

@@ -186,3 +186,47 @@ fn a_target_that_moves_away_is_no_stall() {
     assert!(way > 0.4 && way < 0.85, "{way}");
     assert_eq!(servo.status(), Status::Stalled);
 }
+
+/// Two slides, of which x is slow. A diagonal motion is shortened and stays on its line, or, with
+/// least squares, is as near to the asked velocity as the limits permit; the share that is realised
+/// is reported, and so is the limit.
+#[test]
+fn directions_are_kept_or_least_squares_taken() {
+    let mut builder = Mechanism::builder("slides");
+    for (name, axis, ends, velocity) in
+        [("x", Vec3::X, ["base", "beam"], 0.1), ("y", Vec3::Y, ["beam", "tool"], 1.0)]
+    {
+        let mut joint = JointSpec::new(name, JointKind::Prismatic, ends[0], ends[1]);
+        joint.axis = axis;
+        joint.limits = Limits { lower: -2.0, upper: 2.0, velocity, ..Limits::NONE };
+        builder.joint(joint);
+    }
+    let robot = builder.build().unwrap();
+    let target = Pose::from_translation(Vec3::new(0.1, 0.1, 0.0));
+    for (keep_directions, expected, share) in [(true, [0.1, 0.1], 0.2), (false, [0.1, 0.5], 0.6)] {
+        let objective = TaskObjective::Frame {
+            end_effector: robot.tool().into(),
+            components: Task::POSITION,
+            target: target.into(),
+        };
+        let task = MotionTask { gain: 5.0, ..MotionTask::new("tool", objective) };
+        let options = TaskServoOptions { keep_directions, ..TaskServoOptions::new(&robot) };
+        let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
+        let mut q = vec![0.0; 2];
+        servo.step(&q).unwrap();
+        for (v, expected) in servo.joint_velocities().iter().zip(expected) {
+            // The damping of motions that are bent takes a little.
+            assert!((v - expected).abs() < 0.05 * expected, "{keep_directions}: {v}");
+        }
+        let report = servo.reports()[0];
+        assert!((report.scale - share).abs() < 0.02, "{}", report.scale);
+        let x = StoppedBy::Limit { coordinate: 0, kind: LimitKind::Velocity };
+        assert_eq!(report.stopped_by, Some(x));
+        for _ in 0..3000 {
+            servo.step(&q).unwrap();
+            servo.advance(&mut q);
+        }
+        assert!(servo.status() == Status::Reached && servo.reports()[0].stopped_by.is_none());
+        assert!((servo.reports()[0].scale - 1.0).abs() < 1e-4);
+    }
+}

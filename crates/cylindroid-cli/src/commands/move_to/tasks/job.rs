@@ -167,6 +167,7 @@ fn options(args: &MoveArgs, robot: &Mechanism) -> anyhow::Result<TaskServoOption
     set(&mut options.length, args.servo.length);
     set(&mut options.acceleration, args.servo.acceleration);
     options.plant = args.servo.plant();
+    options.keep_directions = !args.tasks.least_squares;
     set(&mut options.eps, args.inverse.named.parameters.0.get("eps").copied());
     match &args.servo.joint_weights {
         None => {}
