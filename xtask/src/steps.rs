@@ -139,8 +139,9 @@ pub(crate) fn vectors() -> Result<()> {
     }
     models::fetch()?;
     let assets = "target/test-data/models/robosuite/models/assets";
-    let mut files =
-        ["zoo", "loops"].map(|name| format!("crates/cylindroid/tests/data/{name}.xml")).to_vec();
+    let mut files = ["zoo", "loops", "copies"]
+        .map(|name| format!("crates/cylindroid/tests/data/{name}.xml"))
+        .to_vec();
     for robot in MUJOCO_ROBOTS {
         files.push(format!("{assets}/robots/{robot}/robot.xml"));
     }

@@ -193,6 +193,7 @@ fn no_number_of_an_mjcf_is_silent() {
     ablate("mjcf", &lines(MJCF), read_mjcf);
     ablate("zoo.xml", &lines(include_str!("../data/zoo.xml")), read_mjcf);
     ablate("loops.xml", &lines(include_str!("../data/loops.xml")), read_mjcf);
+    ablate("copies.xml", &lines(include_str!("../data/copies.xml")), read_mjcf);
 }
 
 #[test]

@@ -21,6 +21,7 @@ mod magnitudes;
 mod mechanism_file;
 mod mesh_masses;
 mod mjcf;
+mod mjcf_copies;
 mod mujoco;
 mod mutated_files;
 mod mutations;

@@ -18,12 +18,12 @@ pub(crate) fn read_mjcf(text: &str) -> Result<Mechanism> {
     formats::mjcf::parse(text, Path::new("robots/test.xml"))
 }
 
-fn read(text: &str) -> Mechanism {
+pub(crate) fn read(text: &str) -> Mechanism {
     read_mjcf(text).unwrap()
 }
 
 #[track_caller]
-fn check(text: &str, at: &str, says: &str) {
+pub(crate) fn check(text: &str, at: &str, says: &str) {
     let error = refused(text, read_mjcf(text));
     let all = format!("{} ({})", error.message, error.help);
     assert!(all.contains(says), "'{says}' not in: {all}");
@@ -31,7 +31,7 @@ fn check(text: &str, at: &str, says: &str) {
 }
 
 /// A model with this in its world.
-fn world(inside: &str) -> String {
+pub(crate) fn world(inside: &str) -> String {
     format!("<mujoco><compiler angle='radian'/><worldbody>{inside}</worldbody></mujoco>")
 }
 
@@ -76,7 +76,7 @@ pub(crate) fn coordinates(m: &Mechanism, qpos: &Value) -> Vec<f64> {
 }
 
 /// Poses of bodies and sites at three configurations, limits and loops, as MuJoCo says.
-fn against_mujoco(name: &str, m: &Mechanism) {
+pub(crate) fn against_mujoco(name: &str, m: &Mechanism) {
     let vectors = vectors(name);
     for case in vectors["cases"].as_array().unwrap() {
         let q = coordinates(m, &case["q"]);

@@ -38,7 +38,10 @@ impl<'d> Mjcf<'d> {
             return Ok(());
         }
         for node in actuators {
-            self.actuator(node)?;
+            for copy in self.copies_of(node) {
+                self.copies.current = copy;
+                self.actuator(node)?;
+            }
         }
         // A motor at a mimic joint actuates the joint that it follows.
         for i in 0..self.joints.len() {

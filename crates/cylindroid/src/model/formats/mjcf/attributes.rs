@@ -28,6 +28,7 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "actuatorfrcrange",
         ],
         "body" | "frame" => &["name", "childclass"],
+        "replicate" => &["count", "offset", "sep", "childclass"],
         "inertial" => &["mass", "diaginertia", "fullinertia"],
         "motor" => &["name", "class", "joint", "jointinparent", "gear", "forcerange", "ctrlrange"],
         "general" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
@@ -60,6 +61,9 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
         all.push("pos");
         all.extend(ORIENTATIONS);
     }
+    if element == "replicate" {
+        all.push("euler");
+    }
     all
 }
 
@@ -83,7 +87,7 @@ pub(super) fn why_unused(name: &str) -> &'static str {
         "tendon" | "deformable" | "flexcomp" | "composite" => {
             "it is not read; what it ties together is free here"
         }
-        "replicate" | "attach" => "it is not expanded: what it would bring is missing",
+        "attach" => "it is not expanded: what it would bring is missing",
         _ => "not known to this reader",
     }
 }

@@ -7,10 +7,13 @@
 //! Source   mujoco.readthedocs.io, XML reference, body, joint; mj_kinematics
 //! Checked  tests/formats/mjcf.rs (against poses that MuJoCo computed)
 
+use std::rc::Rc;
+
 use roxmltree::Node;
 
 use super::Mjcf;
 use super::attributes::used;
+use super::copies::Placed;
 use super::defaults::Element;
 use super::unique_name::unique;
 use crate::error::{Error, Result};
@@ -19,11 +22,8 @@ use crate::spatial::{Pose, Vec3};
 
 /// A body that has not been read yet.
 struct Pending<'d> {
-    node: Node<'d, 'd>,
+    placed: Placed<'d>,
     parent: String,
-    /// Its pose by enclosing `<frame>` elements.
-    parent_from_frame: Pose,
-    childclass: usize,
     /// True for a child of the world, which may be free.
     top: bool,
 }
@@ -31,10 +31,10 @@ struct Pending<'d> {
 /// The contents of a body, with `<frame>` elements resolved.
 #[derive(Default)]
 struct Inside<'d> {
-    bodies: Vec<(Node<'d, 'd>, Pose, usize)>,
-    joints: Vec<(Node<'d, 'd>, Pose, usize)>,
-    geoms: Vec<(Node<'d, 'd>, Pose, usize)>,
-    sites: Vec<(Node<'d, 'd>, Pose, usize)>,
+    bodies: Vec<Placed<'d>>,
+    joints: Vec<Placed<'d>>,
+    geoms: Vec<Placed<'d>>,
+    sites: Vec<Placed<'d>>,
     inertial: Option<(Node<'d, 'd>, Pose)>,
 }
 
@@ -44,15 +44,15 @@ impl<'d> Mjcf<'d> {
         self.links.push(Link::named("world"));
         self.link_names.insert("world".to_owned());
         self.world.insert("world".to_owned(), Pose::IDENTITY);
-        self.reserve_names();
+        self.reserve_names()?;
         let roots = self.files.children(self.files.main.root_element());
         let mut worlds = Vec::new();
         for root in roots.into_iter().filter(|n| n.has_tag_name("worldbody")) {
             let class = self.defaults.class(&self.reader, root, "childclass")?.unwrap_or(0);
-            let inside = self.inside(root, class)?;
+            let inside = self.inside(root, class, &"".into())?;
             self.furnish(0, &inside)?;
-            for (joint, ..) in &inside.joints {
-                self.reader.note(*joint, "<joint> of the world", "the world does not move", "");
+            for joint in &inside.joints {
+                self.reader.note(joint.node, "<joint> of the world", "the world does not move", "");
             }
             worlds.push(inside.bodies);
         }
@@ -66,39 +66,28 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// Names that are made up for bodies and joints without one are none that another has.
-    fn reserve_names(&mut self) {
-        for node in self.files.roots().into_iter().flat_map(|root| root.descendants()) {
-            let names = match node.tag_name().name() {
-                "body" => &mut self.link_names,
-                "joint" | "freejoint" => &mut self.joint_names,
-                _ => continue,
-            };
-            names.extend(node.attribute("name").map(|n| n.trim().to_owned()));
-        }
-    }
-
     fn body(&mut self, body: Pending<'d>, stack: &mut Vec<Pending<'d>>) -> Result<()> {
-        let Pending { node, parent, parent_from_frame, childclass, top } = body;
+        let Pending { placed, parent, top } = body;
+        let node = placed.node;
         self.reader.unread_attributes(node, &used("body"));
         if node.attribute("mocap").is_some_and(|m| m.trim() == "true") {
             let name = node.attribute("name").unwrap_or("");
             self.reader.note(node, "mocap body", "it stays where the file puts it", name);
         }
-        let name = match node.attribute("name").map(str::trim).filter(|n| !n.is_empty()) {
+        let name = match placed.name() {
             Some(name) => {
-                if name == "world" || !self.given_bodies.insert(name.to_owned()) {
+                if name == "world" || !self.given_bodies.insert(name.clone()) {
                     let message = format!("two bodies are named '{name}'");
                     return Err(self.reader.refuse(node, "name", message));
                 }
-                name.to_owned()
+                name
             }
             None => unique(&mut self.link_names, &format!("body{}", self.links.len())),
         };
         let childclass =
-            self.defaults.class(&self.reader, node, "childclass")?.unwrap_or(childclass);
-        let inside = self.inside(node, childclass)?;
-        let pose = parent_from_frame * self.compiler.pose(&self.reader, &Element::bare(node))?;
+            self.defaults.class(&self.reader, node, "childclass")?.unwrap_or(placed.class);
+        let inside = self.inside(node, childclass, &placed.suffix)?;
+        let pose = placed.place * self.compiler.pose(&self.reader, &Element::bare(node))?;
         self.joints_of(&parent, &name, pose, &inside.joints, top)?;
         let world = self.world.get(&parent).copied().unwrap_or_default() * pose;
         self.world.insert(name.clone(), world);
@@ -108,29 +97,39 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// The contents of a body; `<frame>` elements only displace their contents.
-    fn inside(&mut self, body: Node<'d, 'd>, childclass: usize) -> Result<Inside<'d>> {
+    /// The contents of a body; `<frame>` and `<replicate>` elements only displace their contents.
+    fn inside(
+        &mut self,
+        body: Node<'d, 'd>,
+        childclass: usize,
+        suffix: &Rc<str>,
+    ) -> Result<Inside<'d>> {
         let mut inside = Inside::default();
-        let under = |node, pose: Pose, class: usize| {
-            let children = self.files.children(node).into_iter().rev();
-            children.map(move |child| (child, pose, class)).collect::<Vec<_>>()
-        };
-        let mut stack = under(body, Pose::IDENTITY, childclass);
+        let place = Pose::IDENTITY;
+        let body = Placed { node: body, place, class: childclass, suffix: Rc::clone(suffix) };
+        let mut stack = self.under(&body);
         let mut unread = Vec::new();
-        while let Some((child, pose, class)) = stack.pop() {
+        while let Some(placed) = stack.pop() {
+            let child = placed.node;
             match child.tag_name().name() {
-                "body" => inside.bodies.push((child, pose, class)),
-                "joint" | "freejoint" => inside.joints.push((child, pose, class)),
-                "geom" => inside.geoms.push((child, pose, class)),
-                "site" => inside.sites.push((child, pose, class)),
+                "body" => inside.bodies.push(placed),
+                "joint" | "freejoint" => inside.joints.push(placed),
+                "geom" => inside.geoms.push(placed),
+                "site" => inside.sites.push(placed),
                 "inertial" if inside.inertial.is_none() => {
-                    inside.inertial = Some((child, pose));
+                    inside.inertial = Some((child, placed.place));
+                }
+                "replicate" => {
+                    let copies = self.replicas(&placed)?;
+                    stack.extend(copies.iter().rev().flat_map(|copy| self.under(copy)));
                 }
                 "frame" => {
                     self.reader.unread_attributes(child, &used("frame"));
                     let own = self.compiler.pose(&self.reader, &Element::bare(child))?;
                     let class_of = self.defaults.class(&self.reader, child, "childclass")?;
-                    stack.extend(under(child, pose * own, class_of.unwrap_or(class)));
+                    let place = placed.place * own;
+                    let class = class_of.unwrap_or(placed.class);
+                    stack.extend(self.under(&Placed { place, class, ..placed }));
                 }
                 _ => unread.push(child),
             }
@@ -143,6 +142,12 @@ impl<'d> Mjcf<'d> {
         Ok(inside)
     }
 
+    /// The children of an element, last first.
+    fn under(&self, of: &Placed<'d>) -> Vec<Placed<'d>> {
+        let children = self.files.children(of.node).into_iter().rev();
+        children.map(|node| Placed { node, ..of.clone() }).collect()
+    }
+
     /// Shapes, masses and sites of a link.
     fn furnish(&mut self, index: usize, inside: &Inside<'d>) -> Result<()> {
         let mut link = self.links[index].clone();
@@ -150,13 +155,14 @@ impl<'d> Mjcf<'d> {
         if index > 0 {
             link.inertial = self.mass_of(inside.inertial, &inside.geoms, &link.name)?;
         }
-        for (node, pose, class) in &inside.geoms {
-            self.geom(&mut link, *node, *class, *pose)?;
+        for placed in &inside.geoms {
+            self.geom(&mut link, placed)?;
         }
-        for (node, pose, class) in &inside.sites {
+        for placed in &inside.sites {
+            let Placed { node, place, class, .. } = placed;
             let element = self.defaults.of(&self.reader, *node, *class, &["site"])?;
             self.reader.unread_attributes(*node, &used("site"));
-            let Some(name) = node.attribute("name") else {
+            let Some(name) = placed.name() else {
                 let why = "without a name there is no way to speak of it";
                 self.reader.note(*node, "<site> without a name", why, &link.name);
                 continue;
@@ -165,8 +171,7 @@ impl<'d> Mjcf<'d> {
             if let Some((between, _)) = element.between(&self.reader)? {
                 on_frame = between;
             }
-            let place = *pose * on_frame;
-            self.sites.push((name.to_owned(), link.name.clone(), place));
+            self.sites.push((name, link.name.clone(), *place * on_frame));
         }
         self.links[index] = link;
         Ok(())
@@ -178,7 +183,7 @@ impl<'d> Mjcf<'d> {
         parent: &str,
         body: &str,
         pose: Pose,
-        joints: &[(Node<'d, 'd>, Pose, usize)],
+        joints: &[Placed<'d>],
         top: bool,
     ) -> Result<()> {
         if joints.is_empty() {
@@ -189,15 +194,16 @@ impl<'d> Mjcf<'d> {
         }
         let mut near = parent.to_owned();
         let mut pending = pose;
-        for (i, (node, body_from_frame, class)) in joints.iter().enumerate() {
+        for (i, placed) in joints.iter().enumerate() {
+            let node = placed.node;
             let last = i + 1 == joints.len();
-            let (mut spec, reference) = self.joint(*node, *body_from_frame, *class, body)?;
+            let (mut spec, reference) = self.joint(placed, body)?;
             if spec.kind == JointKind::Free && !(top && joints.len() == 1) {
                 let message =
                     format!("body '{body}' has a free joint and a second joint or a parent");
                 return Err(self.reader.error(
-                    *node,
-                    crate::model::formats::xml::Reader::tag(*node),
+                    node,
+                    crate::model::formats::xml::Reader::tag(node),
                     message,
                     "a free joint is the only one of a body of the world",
                 ));
@@ -231,13 +237,8 @@ impl<'d> Mjcf<'d> {
     }
 
     /// A joint at its anchor in the body, and its coordinates at `ref`.
-    fn joint(
-        &mut self,
-        node: Node<'d, 'd>,
-        body_from_frame: Pose,
-        class: usize,
-        body: &str,
-    ) -> Result<(JointSpec, Vec<f64>)> {
+    fn joint(&mut self, placed: &Placed<'d>, body: &str) -> Result<(JointSpec, Vec<f64>)> {
+        let &Placed { node, place: body_from_frame, class, .. } = placed;
         let reader = &mut self.reader;
         let is_free = node.has_tag_name("freejoint");
         let element = if is_free {
@@ -257,12 +258,12 @@ impl<'d> Mjcf<'d> {
                 return Err(element.refuse(reader, "type", unknown.to_string()));
             }
         };
-        let name = match node.attribute("name").map(str::trim).filter(|n| !n.is_empty()) {
-            Some(name) if !self.given_joints.insert(name.to_owned()) => {
+        let name = match placed.name() {
+            Some(name) if !self.given_joints.insert(name.clone()) => {
                 let message = format!("two joints are named '{name}'");
                 return Err(reader.refuse(node, "name", message));
             }
-            Some(name) => name.to_owned(),
+            Some(name) => name,
             None => unique(&mut self.joint_names, body),
         };
         let mut spec = JointSpec::new(&name, kind, "", "");
@@ -316,17 +317,7 @@ impl<'d> Mjcf<'d> {
     }
 }
 
-fn push<'d>(
-    stack: &mut Vec<Pending<'d>>,
-    parent: &str,
-    bodies: Vec<(Node<'d, 'd>, Pose, usize)>,
-    top: bool,
-) {
-    stack.extend(bodies.into_iter().rev().map(|(node, parent_from_frame, childclass)| Pending {
-        node,
-        parent: parent.to_owned(),
-        parent_from_frame,
-        childclass,
-        top,
-    }));
+fn push<'d>(stack: &mut Vec<Pending<'d>>, parent: &str, bodies: Vec<Placed<'d>>, top: bool) {
+    let pending = |placed| Pending { placed, parent: parent.to_owned(), top };
+    stack.extend(bodies.into_iter().rev().map(pending));
 }

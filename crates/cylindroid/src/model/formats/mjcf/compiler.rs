@@ -154,7 +154,8 @@ impl Compiler {
         Ok(Rotation::IDENTITY)
     }
 
-    fn euler(&self, angles: [f64; 3]) -> Rotation {
+    /// The rotation by three angles in the file's unit, by `eulerseq`.
+    pub(super) fn euler(&self, angles: [f64; 3]) -> Rotation {
         let mut rotation = Rotation::IDENTITY;
         for (letter, angle) in self.sequence.into_iter().zip(angles) {
             let axis = match letter.to_ascii_lowercase() {

@@ -13,6 +13,7 @@ use roxmltree::Node;
 
 use super::Mjcf;
 use super::attributes::used;
+use super::copies::Kind;
 use super::defaults::Element;
 use super::unique_name::unique;
 use crate::error::{Error, Result};
@@ -23,21 +24,26 @@ impl<'d> Mjcf<'d> {
     pub(super) fn equalities(&mut self) -> Result<()> {
         for node in self.files.section("equality") {
             let tag = node.tag_name().name();
-            let name = node.attribute("name").unwrap_or(tag).to_owned();
+            let name = node.attribute("name").unwrap_or(tag);
             let element = self.defaults.of(&self.reader, node, 0, &["equality"])?;
             if element.text("active") == Some("false") {
-                self.reader.note(node, format!("<{tag}> that is not active"), "not read", &name);
+                self.reader.note(node, format!("<{tag}> that is not active"), "not read", name);
                 continue;
             }
             self.reader.unread_attributes(node, &used("equality"));
-            match tag {
-                "connect" | "weld" => self.close(node, tag, &name)?,
-                "joint" => self.couple(node, &name)?,
-                "tendon" => self.couple_by_tendon(node, &name)?,
-                other => {
-                    let what = format!("<{other}> in <equality>");
-                    let why = "connect, weld, joint and tendon are read; this holds nothing here";
-                    self.reader.note(node, what, why, &name);
+            for copy in self.copies_of(node) {
+                let name = format!("{name}{copy}");
+                self.copies.current = copy;
+                match tag {
+                    "connect" | "weld" => self.close(node, tag, &name)?,
+                    "joint" => self.couple(node, &name)?,
+                    "tendon" => self.couple_by_tendon(node, &name)?,
+                    other => {
+                        let what = format!("<{other}> in <equality>");
+                        let why =
+                            "connect, weld, joint and tendon are read; this holds nothing here";
+                        self.reader.note(node, what, why, &name);
+                    }
                 }
             }
         }
@@ -98,20 +104,21 @@ impl<'d> Mjcf<'d> {
             (None, Some(name)) => name,
             _ => self.reader.required(node, attribute)?.trim(),
         };
-        if self.world.contains_key(name) {
-            return Ok(name.to_owned());
+        let name = self.copies.name(Kind::Body, name);
+        if self.world.contains_key(&name) {
+            return Ok(name);
         }
-        let unknown = Error::unknown("body", name, self.world.keys());
+        let unknown = Error::unknown("body", &name, self.world.keys());
         Err(self.reader.refuse(node, attribute, unknown.to_string()))
     }
 
     /// The body of a site and its pose on it.
     fn site(&self, node: Node<'d, 'd>, attribute: &str) -> Result<(String, Pose)> {
-        let name = self.reader.required(node, attribute)?.trim();
+        let name = self.copies.name(Kind::Site, self.reader.required(node, attribute)?.trim());
         match self.sites.iter().find(|s| s.0 == name) {
             Some((_, link, pose)) => Ok((link.clone(), *pose)),
             None => {
-                let unknown = Error::unknown("site", name, self.sites.iter().map(|s| &s.0));
+                let unknown = Error::unknown("site", &name, self.sites.iter().map(|s| &s.0));
                 Err(self.reader.refuse(node, attribute, unknown.to_string()))
             }
         }
@@ -119,9 +126,9 @@ impl<'d> Mjcf<'d> {
 
     /// The index of a joint that an attribute names.
     pub(super) fn joint_named(&self, node: Node<'d, 'd>, attribute: &str) -> Result<usize> {
-        let name = self.reader.required(node, attribute)?.trim();
-        self.joint_index.get(name).copied().ok_or_else(|| {
-            let unknown = Error::unknown("joint", name, self.joints.iter().map(|j| &j.name));
+        let name = self.copies.name(Kind::Joint, self.reader.required(node, attribute)?.trim());
+        self.joint_index.get(&name).copied().ok_or_else(|| {
+            let unknown = Error::unknown("joint", &name, self.joints.iter().map(|j| &j.name));
             self.reader.refuse(node, attribute, unknown.to_string())
         })
     }

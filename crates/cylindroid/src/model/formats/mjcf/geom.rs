@@ -8,6 +8,7 @@ use std::path::Path;
 use super::Mjcf;
 use super::assets::Mesh;
 use super::attributes::used;
+use super::copies::Placed;
 use super::defaults::Element;
 use super::mesh_inertia::MeshInertia;
 use crate::error::{Error, Result};
@@ -61,17 +62,12 @@ impl<'d> Mjcf<'d> {
     }
 
     /// A geom, as visual shape and as collision shape.
-    pub(super) fn geom(
-        &mut self,
-        link: &mut Link,
-        node: roxmltree::Node<'d, 'd>,
-        childclass: usize,
-        link_from_frame: Pose,
-    ) -> Result<()> {
-        let element = self.defaults.of(&self.reader, node, childclass, &["geom"])?;
+    pub(super) fn geom(&mut self, link: &mut Link, placed: &Placed<'d>) -> Result<()> {
+        let node = placed.node;
+        let element = self.defaults.of(&self.reader, node, placed.class, &["geom"])?;
         self.reader.unread_attributes(node, &used("geom"));
         let (pose, size) = self.place_and_size(&element)?;
-        let name = node.attribute("name").unwrap_or("").to_owned();
+        let name = placed.name().unwrap_or_default();
         let Some(geometry) = self.shape(&element, &size)? else { return Ok(()) };
         let own = element.vector::<4>(&self.reader, "rgba")?;
         let material = element.text("material").and_then(|m| self.assets.colours.get(m));
@@ -84,7 +80,7 @@ impl<'d> Mjcf<'d> {
         let shown = flag("group", 0.0)? < 3.0;
         let visual = Visual {
             name,
-            link_from_shape: link_from_frame * pose,
+            link_from_shape: placed.place * pose,
             geometry,
             rgba: own.or(material.copied()),
         };

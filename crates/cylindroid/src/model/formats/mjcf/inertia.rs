@@ -20,6 +20,7 @@ use roxmltree::Node;
 use super::Mjcf;
 use super::attributes::used;
 use super::compiler::FromGeoms;
+use super::copies::Placed;
 use super::defaults::Element;
 use super::mesh_inertia::{self, Solid};
 use crate::error::Result;
@@ -41,7 +42,7 @@ impl<'d> Mjcf<'d> {
     pub(super) fn mass_of(
         &mut self,
         inertial: Option<(Node<'d, 'd>, Pose)>,
-        geoms: &[(Node<'d, 'd>, Pose, usize)],
+        geoms: &[Placed<'d>],
         body: &str,
     ) -> Result<Option<Inertial>> {
         let from_geoms = match self.compiler.inertia_from_geoms {
@@ -81,13 +82,9 @@ impl<'d> Mjcf<'d> {
         Ok(Some(Inertial { mass, link_from_inertia, inertia }))
     }
 
-    fn of_geoms(
-        &mut self,
-        geoms: &[(Node<'d, 'd>, Pose, usize)],
-        body: &str,
-    ) -> Result<Option<Inertial>> {
+    fn of_geoms(&mut self, geoms: &[Placed<'d>], body: &str) -> Result<Option<Inertial>> {
         let mut parts = Vec::new();
-        for (node, link_from_frame, class) in geoms {
+        for Placed { node, place, class, .. } in geoms {
             let element = self.defaults.of(&self.reader, *node, *class, &["geom"])?;
             let group = element.number(&self.reader, "group")?.unwrap_or(0.0);
             let [first, last] = self.compiler.inertia_groups;
@@ -111,7 +108,7 @@ impl<'d> Mjcf<'d> {
                 continue;
             };
             let mass = mass.unwrap_or(density * volume);
-            let pose = *link_from_frame * pose;
+            let pose = *place * pose;
             let axes = pose.rotation.matrix();
             let inertia = axes * (inertia * mass) * axes.transpose();
             parts.push(Part { mass, centre: pose * centre, inertia });

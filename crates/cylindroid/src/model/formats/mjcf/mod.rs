@@ -3,8 +3,8 @@
 //! Formula  world_from_body and q equal MuJoCo's xpos, xquat and qpos (quaternions as rotation
 //!          vectors); home is qpos0 or the key frame "home"
 //! Units    m, kg; degrees unless `<compiler angle="radian">`
-//! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<include>` in the model's
-//!          own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. Other
+//! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<replicate>`, `<include>` in
+//!          the model's own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. Other
 //!          elements and attributes are listed in the load report
 //! Why so   equality constraints become loop joints and mimic joints, so a gripper with loops is
 //!          represented like any closed chain of a mechanism file
@@ -16,12 +16,14 @@ mod assets;
 mod attributes;
 mod body;
 mod compiler;
+mod copies;
 mod defaults;
 mod equality;
 mod files;
 mod geom;
 mod inertia;
 mod mesh_inertia;
+mod replicate;
 mod unique_name;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -32,6 +34,7 @@ use roxmltree::Document;
 use self::assets::Assets;
 use self::attributes::{FORMAT, why_unused};
 use self::compiler::Compiler;
+use self::copies::{Copies, Kind};
 use self::defaults::Defaults;
 use self::files::Files;
 use self::unique_name::unique;
@@ -70,6 +73,7 @@ struct Mjcf<'d> {
     given_joints: BTreeSet<String>,
     /// Indices of the joints.
     joint_index: BTreeMap<String, usize>,
+    copies: Copies,
 }
 
 /// Reads the text of an MJCF model. The path is used in errors, to find meshes, and to read the
@@ -151,6 +155,7 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
         given_bodies: BTreeSet::new(),
         given_joints: BTreeSet::new(),
         joint_index: BTreeMap::new(),
+        copies: Copies::default(),
     };
     it.assets()?;
     it.bodies()?;
@@ -191,12 +196,15 @@ impl Mjcf<'_> {
                 continue;
             }
             self.reader.unread_attributes(node, &["name", "body1", "body2"]);
-            let a = self.reader.required(node, "body1")?.trim().to_owned();
-            let b = self.reader.required(node, "body2")?.trim().to_owned();
-            if [&a, &b].iter().all(|body| self.link_names.contains(*body)) {
-                self.disabled_collisions.push([a, b]);
-            } else {
-                self.reader.note(node, "<exclude>", "it names no bodies of this model", name);
+            for copy in self.copies_of(node) {
+                self.copies.current = copy;
+                let [a, b] = ["body1", "body2"].map(|body| self.reader.required(node, body));
+                let [a, b] = [a?, b?].map(|body| self.copies.name(Kind::Body, body.trim()));
+                if [&a, &b].iter().all(|body| self.link_names.contains(*body)) {
+                    self.disabled_collisions.push([a, b]);
+                } else {
+                    self.reader.note(node, "<exclude>", "it names no bodies of this model", name);
+                }
             }
         }
         Ok(())

@@ -1,0 +1,97 @@
+//! MJCF `<replicate>`: copies against MuJoCo (tests/vectors/mujoco/copies.json, written by
+//! `cargo xtask vectors`), what refers to them, what is refused.
+
+use cylindroid::Mechanism;
+
+use crate::mjcf::{against_mujoco, check, read, read_mjcf, world};
+use crate::report;
+
+const COPIES: &str = include_str!("../data/copies.xml");
+
+fn mimic(m: &Mechanism, name: &str) -> (String, f64) {
+    let joint = m.joints().iter().find(|j| j.name == name).unwrap();
+    let mimic = joint.mimic.as_ref().unwrap();
+    (mimic.joint.clone(), mimic.multiplier)
+}
+
+#[test]
+fn copies_are_those_of_mujoco() {
+    let m = read(COPIES);
+    against_mujoco("copies", &m);
+    let moving: Vec<&str> =
+        m.joints().iter().filter(|j| j.kind.dof() > 0).map(|j| j.name.as_str()).collect();
+    assert_eq!(
+        moving[..8],
+        ["first", "hip_0", "bend0_0", "turn0_0", "bend1_0", "turn1_0", "knee_0", "hip_1"]
+    );
+    assert_eq!(moving.len(), 30);
+}
+
+#[test]
+fn copies_of_constraints_actuators_and_excluded_contacts_follow() {
+    let m = read(COPIES);
+    for (name, leader, slope) in
+        [("turn0_0", "bend0_0", -2.0), ("turn1_2", "bend1_2", -2.0), ("knee_1", "hip_1", -2.0)]
+    {
+        assert_eq!(mimic(&m, name), (leader.to_owned(), slope));
+    }
+    let loops: Vec<&str> = m.loops().iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(
+        loops,
+        [
+            "pin_0", "pin_1", "pin_2", "hung0_0", "hung1_0", "hung0_1", "hung1_1", "hung0_2",
+            "hung1_2"
+        ]
+    );
+    let actuated: Vec<&str> =
+        m.joints().iter().filter(|j| j.actuated).map(|j| j.name.as_str()).collect();
+    assert_eq!(
+        actuated,
+        ["first", "bend0_0", "bend1_0", "bend0_1", "bend1_1", "bend0_2", "bend1_2"]
+    );
+    assert!(
+        m.joints().iter().filter(|j| j.name.starts_with("bend")).all(|j| j.limits.effort == 3.0)
+    );
+    let name = |link: &usize| m.links()[*link].name.as_str();
+    let pairs: Vec<_> =
+        m.disabled_collisions().iter().map(|p| [name(&p[0]), name(&p[1])]).collect();
+    assert_eq!(pairs.len(), 16);
+    for [a, b] in [["leg_2", "toe1_2"], ["first", "ring09"]] {
+        assert!(pairs.contains(&[a, b]) || pairs.contains(&[b, a]), "{pairs:?}");
+    }
+    let text = report(&m);
+    assert!(text.contains("it ties a copy to what is not copied with it"), "{text}");
+    assert!(!text.contains("replicate"), "{text}");
+}
+
+#[test]
+fn copies_have_as_many_digits_as_their_count() {
+    let body = "<body name='b'><geom size='1'/></body>";
+    for (count, links) in [("-1", 1), ("0", 1), ("1", 2), ("10", 11)] {
+        let m = read(&world(&format!("<replicate count='{count}'>{body}</replicate>")));
+        assert_eq!(m.links().len(), links, "{count}");
+        let last = if links == 11 { "b09" } else { "b0" };
+        assert_eq!(m.frame(last).is_ok(), links > 1, "{count}");
+    }
+    // A body without a name takes none that a copy has.
+    let m = read(&world("<body/><replicate count='3'><body name='body'/></replicate>"));
+    assert_eq!(m.links().len(), 5);
+}
+
+#[test]
+fn copies_that_are_wrong_are_refused() {
+    let body = "<body name='b'/>";
+    let of = |attributes: &str, inside: &str| {
+        world(&format!("<replicate {attributes}>{inside}</replicate>"))
+    };
+    check(&of("", body), "<replicate", "has no count");
+    check(&of("count='2.5'", body), "2.5", "not an integer");
+    check(&of("count='2' offset='1 2'", body), "1 2", "expected 3");
+    check(&of("count='2'", "<joint name='j'/>"), "j", "no direct child of <replicate>");
+    check(&of("count='100000'", &(body.to_owned() + "<body/>")), "<body", "exceed 100000 elements");
+    check(&of("count='2' childclass='x'", body), "x", "default class");
+    let nested = (0..40).fold(body.to_owned(), |inside, _| {
+        format!("<replicate count='1000000000'>{inside}</replicate>")
+    });
+    assert!(read_mjcf(&world(&nested)).unwrap_err().to_string().contains("exceed"));
+}
