@@ -230,3 +230,44 @@ def test_a_held_body_is_filled_between_its_contacts(plot, dimension):
         (finger,) = (line for line in ax.lines if line.get_label() == f"_finger{i}")
         ends = np.transpose(finger.get_data_3d() if dimension == 3 else finger.get_data())
         np.testing.assert_allclose(ends, [2 * contact, contact], atol=1e-12)
+
+
+def test_maps_are_slices_clouds_and_histograms(plot, tmp_path):
+    across, up = np.meshgrid(np.linspace(-1, 1, 7), np.linspace(0, 2, 5))
+    order = np.random.default_rng(3).permutation(across.size)
+    columns = {"q1": across.ravel()[order], "q2": up.ravel()[order]}
+    columns["w"] = columns["q1"] + 0.25
+    columns["w"][0] = np.inf
+    ax = plot.map(columns, "w", "q1", "q2")
+    mesh = ax.collections[0]
+    drawn = np.asarray(mesh.get_array()).reshape(5, 7)
+    expected = np.tile(np.linspace(-1, 1, 7) + 0.25, (5, 1))
+    finite = ~np.ma.getmaskarray(mesh.get_array()).reshape(5, 7)
+    assert finite.sum() == 34
+    np.testing.assert_allclose(drawn[finite], expected[finite], atol=1e-15)
+    # The line on which it is zero, at q1 = -0.25.
+    line = np.concatenate([p.vertices for p in ax.collections[-1].get_paths()])
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("q1", "q2")
+    assert len(line) and np.abs(line[:, 0] + 0.25).max() < 1e-12
+
+    found = cy.sweep(cy.load("panda"), samples=500, quantities=["pose", "yoshikawa"])
+    cloud = plot.map(found, "yoshikawa", z="z")
+    assert cloud.get_zlabel() == "z (m)"
+    points = np.column_stack(cloud.collections[0]._offsets3d)
+    np.testing.assert_array_equal(points, np.column_stack([found[c] for c in "xyz"]))
+    flat = plot.map(found, "yoshikawa", log=True)
+    np.testing.assert_array_equal(flat.collections[0].get_array(), found["yoshikawa"])
+    bars = plot.map(found, x="yoshikawa", y=None)
+    assert sum(bar.get_height() for bar in bars.patches) == 500
+    cloud.figure.savefig(tmp_path / "cloud.png")
+
+    for more, message in [
+        (("volume",), "no column 'volume'; the columns are index"),
+        (("yoshikawa", "x", None, "z"), "z needs y"),
+        (("yoshikawa", "x", "y", "z", flat), "projection='3d'"),
+        (("yoshikawa", "x", "y", None, cloud), "of a plane"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            plot.map(found, *more)
+    with pytest.raises(ValueError, match="one length"):
+        plot.map({"x": [1.0], "y": [1.0, 2.0]})
