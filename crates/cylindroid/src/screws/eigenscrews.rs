@@ -131,12 +131,12 @@ pub struct Eigenscrews {
 /// A matrix that is not 6 x 6, finite and symmetric; a pitch that is NaN or infinite.
 pub fn eigenscrews(stiffness: &Matrix, h: f64) -> Result<Eigenscrews> {
     Error::check_finite("pitch h", &[h])?;
-    Error::check_len("rows of the stiffness", 6, stiffness.rows())?;
-    Error::check_len("columns of the stiffness", 6, stiffness.cols())?;
-    Error::check_finite("stiffness", stiffness.as_slice())?;
+    Error::check_len("rows of the stiffness K", 6, stiffness.rows())?;
+    Error::check_len("columns of the stiffness K", 6, stiffness.cols())?;
+    Error::check_finite("stiffness K", stiffness.as_slice())?;
     if !stiffness.is_symmetric() {
         return Err(Error::InvalidOption {
-            option: "stiffness",
+            option: "stiffness K",
             value: "6 x 6 matrix".to_owned(),
             reason: "it must be symmetric; use (K + K^T) / 2".to_owned(),
         });

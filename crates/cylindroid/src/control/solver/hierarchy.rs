@@ -109,6 +109,18 @@ impl ActiveSet {
         self.keep(level, precision);
     }
 
+    /// The size of what the least squares of a level leave of its target; the point stays there, and
+    /// nothing is kept.
+    pub(in crate::control) fn least_residual(
+        &mut self,
+        level: &mut Level,
+        precision: Precision,
+    ) -> f64 {
+        level.scale = level.rows.frobenius_norm();
+        self.minimise(Objective::Rows(level), precision);
+        level.residual(self.point())
+    }
+
     /// The point nearest to `desired` within what the levels before leave.
     pub(in crate::control) fn approach(&mut self, desired: &[f64], precision: Precision) {
         self.minimise(Objective::Nearest(desired), precision);

@@ -3,7 +3,8 @@
 //!
 //! Formula  `solver/hierarchy.rs`; directions changed, of all such tasks of a level at once:
 //!          min |A y - b|^2 + d |y|^2, d = k |error| of the task with the largest error, k and its
-//!          least value from `solver/saturation.rs`
+//!          least value from `solver/saturation.rs`; for least squares |error| is the part of it
+//!          that limits leave
 //! Valid    a level that higher levels fix in part cannot be scaled as a whole: its direction is
 //!          changed where a limit stops the rest
 //! Checked  tests/it/servo/tasks.rs
@@ -149,7 +150,15 @@ impl TaskServo {
             let Some(error) = errors.reduce(f64::max) else { continue };
             // The others share by their weights what is left: none of them comes first.
             load_turned(turned, members, &level.whole);
-            let damping = (CURVATURE * error).max(LEAST_DAMPING);
+            let out_of_reach = if self.options.keep_directions {
+                error
+            } else {
+                // Only what limits leave of it.
+                let size = norm(&turned.target);
+                let left = self.set.least_residual(turned, STRAIGHT);
+                if size > 0.0 { error * (left / size) } else { 0.0 }
+            };
+            let damping = (CURVATURE * out_of_reach).max(LEAST_DAMPING);
             self.stops.clear();
             self.set.solve_damped(turned, damping, STRAIGHT, |row| self.stops.push(row));
             turned.left(self.set.point());
