@@ -392,18 +392,18 @@ def test_servo_with_tasks_is_one_of_many():
 
 
 def test_least_squares_come_nearer_than_a_kept_direction():
-    slow = {"left0_joint": {"velocity": 0.01}}
+    slow = {f"left{i}_joint": {"velocity": 0.01} for i in range(3)}
     goal = moved("left6", [0.1, 0.1, 0.1])
     errors = []
     for keep in (True, False):
         servo = cy.TaskServo(ROBOT, [cy.FrameTask("left6", goal, components="position")], limits=slow,
                              keep_directions=keep)
         q = BENT
-        for _ in range(500):
+        for _ in range(200):
             servo.step(q)
             q = servo.advance(q)
         errors.append(next(iter(servo.reports.values())).position_error)
-    assert errors[1] < 0.9 * errors[0]
+    assert errors[1] < 0.95 * errors[0]
     with pytest.raises(cy.ArgumentTypeError, match="keep_directions"):
         cy.TaskServo(ROBOT, [], keep_directions="yes")
 
