@@ -1,0 +1,108 @@
+"""Pictures of sweeps."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._figure import equal_scales, is_spatial, pyplot
+
+
+def map(
+    columns: Mapping[str, ArrayLike],
+    color: str | None = None,
+    x: str = "x",
+    y: str | None = "y",
+    z: str | None = None,
+    ax: Any = None,
+    *,
+    log: bool = False,
+) -> Any:
+    """A sweep as a slice, a cloud of points, or a histogram.
+
+    Rows that are a grid of x and y are drawn as a slice, one cell for each, with the line on which a
+    value that changes its sign is zero; other rows as points, in space with `z`; `x` alone (`y=None`) as
+    a histogram.
+
+    Parameters
+    ----------
+    columns : mapping of str to array_like, (N,)
+        As `cylindroid.sweep` returns them; a DataFrame is one too.
+    color : str, optional
+        The column that colours cells or points; values that are not finite are left out. A slice
+        needs one.
+    x, y, z : str, optional
+        The columns of the axes: metres for x, y and z of a pose, or coordinates of a grid.
+    ax : matplotlib axes, optional
+        Default: new ones.
+    log : bool, optional
+        Logarithmic colours, or numbers of a histogram.
+
+    Returns
+    -------
+    The axes.
+    """
+    names = [name for name in (x, y, z, color) if name is not None]
+    for name in names:
+        if name not in columns:
+            known = ", ".join(str(known) for known in columns)
+            raise ValueError(f"there is no column '{name}'; the columns are {known}")
+    data = {name: np.asarray(columns[name], dtype=float) for name in names}
+    if any(values.shape != data[x].shape or values.ndim != 1 for values in data.values()):
+        raise ValueError("columns must be arrays of one length")
+    if z is not None and y is None:
+        raise ValueError("z needs y")
+    if ax is None:
+        ax = pyplot().figure().add_subplot(projection=None if z is None else "3d")
+    elif (z is not None) != is_spatial(ax):
+        needed = "created with projection='3d'" if z is not None else "of a plane"
+        raise ValueError(f"pass axes {needed}")
+    lengths = {"x", "y", "z"}
+
+    def label(name: str) -> str:
+        return f"{name} (m)" if name in lengths else name
+
+    ax.set_xlabel(label(x))
+    if y is None:
+        ax.hist(data[x][np.isfinite(data[x])], bins="auto", log=log, color="tab:blue")
+        ax.set_ylabel("rows")
+        return ax
+    ax.set_ylabel(label(y))
+    if {x, y} <= lengths and z is None:
+        ax.set_aspect("equal", adjustable="datalim")
+    style: dict[str, Any] = {"norm": "log"} if log and color is not None else {}
+    grid = None if z is not None or color is None else _grid(data[x], data[y], data[color])
+    if grid is not None:
+        across, up, values = grid
+        drawn = ax.pcolormesh(across, up, np.ma.masked_invalid(values), shading="nearest", **style)
+        finite = values[np.isfinite(values)]
+        if finite.size and finite.min() < 0 < finite.max() and min(values.shape) > 1:
+            ax.contour(across, up, values, levels=[0.0], colors="k", linewidths=1)
+    else:
+        kept = np.ones(len(data[x]), bool) if color is None else np.isfinite(data[color])
+        if color is not None:
+            style["c"] = data[color][kept]
+        drawn = ax.scatter(*(data[name][kept] for name in names if name != color), s=2, **style)
+    if z is not None:
+        ax.set_zlabel(label(z))
+        if {x, y, z} == lengths:
+            equal_scales(ax)
+    if color is not None:
+        ax.figure.colorbar(drawn, ax=ax, label=color, pad=0.05 if z is None else 0.15)
+    return ax
+
+
+def _grid(
+    x: NDArray[Any], y: NDArray[Any], values: NDArray[Any]
+) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]] | None:
+    """The values over the grid of x and y, if each of its nodes is one of the rows."""
+    across, column = np.unique(x, return_inverse=True)
+    up, row = np.unique(y, return_inverse=True)
+    if len(across) * len(up) != len(x) or len(np.unique(row * len(across) + column)) != len(x):
+        return None
+    grid = np.empty((len(up), len(across)))
+    grid[row, column] = values
+    return across, up, grid
