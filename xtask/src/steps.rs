@@ -139,7 +139,7 @@ pub(crate) fn vectors() -> Result<()> {
     }
     models::fetch()?;
     let assets = "target/test-data/models/robosuite/models/assets";
-    let mut files = ["zoo", "loops", "copies"]
+    let mut files = ["zoo", "loops", "copies", "attached"]
         .map(|name| format!("crates/cylindroid/tests/data/{name}.xml"))
         .to_vec();
     for robot in MUJOCO_ROBOTS {

@@ -1,5 +1,5 @@
-//! MJCF `<replicate>`: copies against MuJoCo (tests/vectors/mujoco/copies.json, written by
-//! `cargo xtask vectors`), what refers to them, what is refused.
+//! MJCF `<replicate>` and `<attach>`: poses against MuJoCo (tests/vectors/mujoco/copies.json and
+//! attached.json, written by `cargo xtask vectors`), what refers to copies, what is refused.
 
 use cylindroid::Mechanism;
 
@@ -94,4 +94,76 @@ fn copies_that_are_wrong_are_refused() {
         format!("<replicate count='1000000000'>{inside}</replicate>")
     });
     assert!(read_mjcf(&world(&nested)).unwrap_err().to_string().contains("exceed"));
+}
+
+fn attached() -> Mechanism {
+    let path = format!("{}/tests/data/attached.xml", env!("CARGO_MANIFEST_DIR"));
+    cylindroid::load_file(path.as_ref()).unwrap()
+}
+
+#[test]
+fn attached_models_are_those_of_mujoco() {
+    let m = attached();
+    against_mujoco("attached", &m);
+    let moving: Vec<&str> =
+        m.joints().iter().filter(|j| j.kind.dof() > 0).map(|j| j.name.as_str()).collect();
+    // As MuJoCo names them.
+    let expected = [
+        "arm",
+        "left_palm",
+        "left_swing",
+        "left_twist",
+        "after",
+        "mast",
+        "all_palm",
+        "all_swing",
+        "all_twist",
+        "all_thumb",
+        "row_swing0",
+        "row_twist0",
+        "row_swing1",
+        "row_twist1",
+    ];
+    assert_eq!(moving, expected);
+}
+
+#[test]
+fn attached_constraints_and_actuators_come_with_all_their_bodies() {
+    let m = attached();
+    assert_eq!(mimic(&m, "all_palm"), ("all_thumb".to_owned(), 2.0));
+    assert_eq!(mimic(&m, "row_swing1"), ("row_twist1".to_owned(), 1.0));
+    assert!(m.joints().iter().all(|j| j.name != "left_palm" || j.mimic.is_none()));
+    let loops: Vec<&str> = m.loops().iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(loops, ["all_pin"]);
+    let actuated: Vec<&str> =
+        m.joints().iter().filter(|j| j.actuated).map(|j| j.name.as_str()).collect();
+    assert!(actuated.contains(&"arm") && actuated.contains(&"all_thumb"), "{actuated:?}");
+    assert!(!actuated.contains(&"after") && !actuated.contains(&"mast"), "{actuated:?}");
+    assert_eq!(m.disabled_collisions().len(), 2);
+    let text = report(&m);
+    assert!(text.contains("it ties a body that is attached to one that is not"), "{text}");
+}
+
+#[test]
+fn attached_models_that_are_wrong_are_refused() {
+    let data = format!("{}/tests/data", env!("CARGO_MANIFEST_DIR"));
+    let of = |file: &str, attach: &str| {
+        let model = format!("<asset><model name='m' file='{data}/{file}'/></asset>");
+        format!("<mujoco>{model}<worldbody>{attach}</worldbody></mujoco>")
+    };
+    let attach = "<attach model='m' body='tip' prefix='a_'/>";
+    check(&of("hand.xml", "<attach model='x' prefix=''/>"), "x", "model");
+    check(&of("hand.xml", "<attach model='m' body='tap' prefix=''/>"), "tap", "nearest: tip");
+    check(&of("hand.xml", &attach.repeat(2)), "a_", "already");
+    check(&of("none.xml", attach), &data, "cannot read");
+    let itself = std::env::temp_dir().join(format!("attaches-itself-{}.xml", std::process::id()));
+    let name = itself.file_name().unwrap().to_string_lossy();
+    std::fs::write(
+        &itself,
+        format!("<mujoco><asset><model name='m' file='{name}'/></asset></mujoco>"),
+    )
+    .unwrap();
+    let error = cylindroid::load_file(&itself).unwrap_err().to_string();
+    std::fs::remove_file(&itself).unwrap();
+    assert!(error.contains("10 inside one another"), "{error}");
 }

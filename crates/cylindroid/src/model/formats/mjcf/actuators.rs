@@ -30,6 +30,9 @@ impl<'d> Mjcf<'d> {
     /// are actuated, as in a URDF.
     pub(super) fn actuators(&mut self) -> Result<()> {
         let actuators = self.files.section("actuator");
+        if actuators.is_empty() && self.has_attached_actuators {
+            return Ok(());
+        }
         if actuators.is_empty() {
             let one = |kind| {
                 matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic)
@@ -95,10 +98,10 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// The key frame named "home" becomes home.
-    pub(super) fn key_frame(&mut self) -> Result<()> {
+    /// The key frame named "home" of the main model becomes home.
+    pub(super) fn key_frame(&mut self, is_main: bool) -> Result<()> {
         let keys = self.files.section("keyframe");
-        let home = keys.iter().copied().find(|k| k.attribute("name") == Some("home"));
+        let home = keys.iter().copied().find(|k| is_main && k.attribute("name") == Some("home"));
         for key in keys.into_iter().filter(|k| Some(*k) != home) {
             let name = key.attribute("name").unwrap_or("");
             self.reader.note(key, "<key>", "only the key named 'home' is used", name);

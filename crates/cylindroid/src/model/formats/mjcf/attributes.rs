@@ -28,6 +28,8 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "actuatorfrcrange",
         ],
         "body" | "frame" => &["name", "childclass"],
+        "attach" => &["model", "body", "prefix"],
+        "model" => &["name", "file"],
         "replicate" => &["count", "offset", "sep", "childclass"],
         "inertial" => &["mass", "diaginertia", "fullinertia"],
         "motor" => &["name", "class", "joint", "jointinparent", "gear", "forcerange", "ctrlrange"],
@@ -87,7 +89,6 @@ pub(super) fn why_unused(name: &str) -> &'static str {
         "tendon" | "deformable" | "flexcomp" | "composite" => {
             "it is not read; what it ties together is free here"
         }
-        "attach" => "it is not expanded: what it would bring is missing",
         _ => "not known to this reader",
     }
 }

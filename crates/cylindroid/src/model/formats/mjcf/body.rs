@@ -69,6 +69,9 @@ impl<'d> Mjcf<'d> {
     fn body(&mut self, body: Pending<'d>, stack: &mut Vec<Pending<'d>>) -> Result<()> {
         let Pending { placed, parent, top } = body;
         let node = placed.node;
+        if node.has_tag_name("attach") {
+            return self.attach(&placed, &parent);
+        }
         self.reader.unread_attributes(node, &used("body"));
         if node.attribute("mocap").is_some_and(|m| m.trim() == "true") {
             let name = node.attribute("name").unwrap_or("");
@@ -112,7 +115,7 @@ impl<'d> Mjcf<'d> {
         while let Some(placed) = stack.pop() {
             let child = placed.node;
             match child.tag_name().name() {
-                "body" => inside.bodies.push(placed),
+                "body" | "attach" => inside.bodies.push(placed),
                 "joint" | "freejoint" => inside.joints.push(placed),
                 "geom" => inside.geoms.push(placed),
                 "site" => inside.sites.push(placed),
@@ -186,6 +189,7 @@ impl<'d> Mjcf<'d> {
         joints: &[Placed<'d>],
         top: bool,
     ) -> Result<()> {
+        self.first_joint.insert(body.to_owned(), self.joints.len());
         if joints.is_empty() {
             let name = unique(&mut self.joint_names, body);
             let fixed = JointSpec::new(&name, JointKind::Fixed, parent, body);

@@ -22,10 +22,7 @@ pub(super) fn find(
     before: &[Included],
 ) -> Result<Option<PathBuf>> {
     let name = Reader::new(*source, None).required(include, "file")?.trim().to_owned();
-    let folder = |path: &Path| path.parent().unwrap_or_else(|| Path::new("")).to_owned();
-    let beside = folder(source.path).join(&name);
-    let path = Some(folder(main).join(&name)).filter(|p| p.exists() || !beside.exists());
-    let path = path.unwrap_or(beside);
+    let path = beside(main, source.path, &name);
     let is_same = |f: &Path| f == path || is_same(f, &path);
     if before.iter().any(|f| is_same(&f.path)) || is_same(source.path) {
         let message = format!("'{name}' is included twice");
@@ -33,6 +30,15 @@ pub(super) fn find(
         return Err(source.error(span, message, "include a file only once"));
     }
     Ok(Some(path))
+}
+
+/// The path of a file that a model names: from the folder of the main file, or of the one that
+/// names it.
+pub(super) fn beside(main: &Path, source: &Path, name: &str) -> PathBuf {
+    let folder = |path: &Path| path.parent().unwrap_or_else(|| Path::new("")).to_owned();
+    let beside = folder(source).join(name);
+    let path = Some(folder(main).join(name)).filter(|p| p.exists() || !beside.exists());
+    path.unwrap_or(beside)
 }
 
 fn is_same(a: &Path, b: &Path) -> bool {

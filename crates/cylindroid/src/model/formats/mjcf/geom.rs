@@ -52,6 +52,7 @@ impl<'d> Mjcf<'d> {
                     let mesh = Mesh { uri, scale, inertia, is_moved, solid: None };
                     self.assets.meshes.insert(name, mesh);
                 }
+                "model" => {}
                 other => {
                     let what = format!("<{other}> in <asset>");
                     self.reader.note(node, what, "it is not drawn", "");

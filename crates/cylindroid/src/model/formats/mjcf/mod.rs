@@ -3,8 +3,8 @@
 //! Formula  world_from_body and q equal MuJoCo's xpos, xquat and qpos (quaternions as rotation
 //!          vectors); home is qpos0 or the key frame "home"
 //! Units    m, kg; degrees unless `<compiler angle="radian">`
-//! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<replicate>`, `<include>` in
-//!          the model's own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. Other
+//! Valid    bodies, joints, sites, shapes, default classes, `<frame>`, `<replicate>`, `<attach>`,
+//!          `<include>` in the model's own folder, `<equality>` connect, weld, joint and tendon, actuators at joints. Other
 //!          elements and attributes are listed in the load report
 //! Why so   equality constraints become loop joints and mimic joints, so a gripper with loops is
 //!          represented like any closed chain of a mechanism file
@@ -13,6 +13,7 @@
 
 mod actuators;
 mod assets;
+mod attach;
 mod attributes;
 mod body;
 mod compiler;
@@ -23,11 +24,14 @@ mod files;
 mod geom;
 mod inertia;
 mod mesh_inertia;
+mod part;
 mod replicate;
 mod unique_name;
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::rc::Rc;
 
 use roxmltree::Document;
 
@@ -37,6 +41,7 @@ use self::compiler::Compiler;
 use self::copies::{Copies, Kind};
 use self::defaults::Defaults;
 use self::files::Files;
+use self::part::{Nesting, Part, report_of_parts};
 use self::unique_name::unique;
 use super::inclusion::{self, ByInclude};
 use super::span::Source;
@@ -74,6 +79,11 @@ struct Mjcf<'d> {
     /// Indices of the joints.
     joint_index: BTreeMap<String, usize>,
     copies: Copies,
+    /// The models that this one may attach.
+    attachable: BTreeMap<String, Rc<Part>>,
+    has_attached_actuators: bool,
+    /// The index of the first joint between a body and its parent.
+    first_joint: BTreeMap<String, usize>,
 }
 
 /// Reads the text of an MJCF model. The path is used in errors, to find meshes, and to read the
@@ -95,6 +105,14 @@ struct Mjcf<'d> {
 /// [`Error::File`] with line and column for broken XML, a number that is not one, a name that is
 /// missing or unknown, an include that cannot be read, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    let nesting = Nesting { depth: 0, models: &Cell::new(0) };
+    with_model(text, path, nesting, |model, name| model.write(name))
+}
+
+/// What is made of a model that is read.
+type Finish<T> = fn(Mjcf<'_>, Option<&str>) -> Result<T>;
+
+fn with_model<T>(text: &str, path: &Path, nesting: Nesting<'_>, finish: Finish<T>) -> Result<T> {
     let text = &*xml_limits::without_undeclared(text);
     let source = Source { format: FORMAT, path, text };
     let main = xml::document(&source)?;
@@ -109,10 +127,16 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
     let sources: Vec<Source<'_>> = included.iter().map(|f| f.source(FORMAT)).collect();
     let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
     let files = Files { main: &main, included: ByInclude::new(&main, &included, &documents) };
-    read(source, sources.clone(), files)
+    let name = main.root_element().attribute("model");
+    finish(read(source, sources.clone(), files, nesting)?, name)
 }
 
-fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> Result<Mechanism> {
+fn read<'d>(
+    source: Source<'d>,
+    included: Vec<Source<'d>>,
+    files: Files<'d>,
+    nesting: Nesting<'_>,
+) -> Result<Mjcf<'d>> {
     let mut reader = Reader::new(source, None);
     reader.included = included;
     (reader.owners, reader.why) = (&["body", "key", "default"], why_unused);
@@ -156,8 +180,12 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
         given_joints: BTreeSet::new(),
         joint_index: BTreeMap::new(),
         copies: Copies::default(),
+        attachable: BTreeMap::new(),
+        has_attached_actuators: false,
+        first_joint: BTreeMap::new(),
     };
     it.assets()?;
+    it.parts(nesting)?;
     it.bodies()?;
     it.excluded_contacts()?;
     it.set_total_mass();
@@ -165,8 +193,8 @@ fn read<'d>(source: Source<'d>, included: Vec<Source<'d>>, files: Files<'d>) -> 
     it.equalities()?;
     it.tendons();
     it.actuators()?;
-    it.key_frame()?;
-    it.write(root.attribute("model"))
+    it.key_frame(nesting.depth == 0)?;
+    Ok(it)
 }
 
 impl Mjcf<'_> {
@@ -240,6 +268,7 @@ impl Mjcf<'_> {
         let report = builder.report();
         report.format = FORMAT;
         self.reader.report(&self.files.roots(), report);
+        report_of_parts(&self.attachable, report);
         builder.build().map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             let root = self.files.main.root_element();

@@ -45,16 +45,14 @@ impl<'d> Mjcf<'d> {
                 written += suffixes.len();
             }
             let mut below = suffixes;
-            if let (Some(kind), Some(name)) = (kind, node.attribute("name").map(str::trim)) {
-                let taken = match kind {
-                    Kind::Body => &mut self.link_names,
-                    Kind::Joint => &mut self.joint_names,
-                    Kind::Site => &mut BTreeSet::new(),
-                };
-                taken.extend(below.iter().map(|suffix| format!("{name}{suffix}")));
-                if !Rc::ptr_eq(&below, &one) {
-                    self.copies.suffixes.insert((kind, name.to_owned()), Rc::clone(&below));
+            if node.has_tag_name("attach") {
+                for (kind, name) in self.attached_names(node)? {
+                    written += below.len();
+                    self.reserve(kind, &name, &below);
                 }
+            }
+            if let (Some(kind), Some(name)) = (kind, node.attribute("name").map(str::trim)) {
+                self.reserve(kind, name, &below);
             }
             if node.has_tag_name("replicate") {
                 let count = self.count_of(node)?;
@@ -74,6 +72,19 @@ impl<'d> Mjcf<'d> {
             stack.extend(self.files.children(node).into_iter().map(|n| (n, Rc::clone(&below))));
         }
         Ok(())
+    }
+
+    /// Reserves the names of the copies of an element.
+    fn reserve(&mut self, kind: Kind, name: &str, suffixes: &Rc<[Rc<str>]>) {
+        let taken = match kind {
+            Kind::Body => &mut self.link_names,
+            Kind::Joint => &mut self.joint_names,
+            Kind::Site => &mut BTreeSet::new(),
+        };
+        taken.extend(suffixes.iter().map(|suffix| format!("{name}{suffix}")));
+        if suffixes.iter().all(|s| !s.is_empty()) {
+            self.copies.suffixes.insert((kind, name.to_owned()), Rc::clone(suffixes));
+        }
     }
 
     fn count_of(&self, replicate: Node<'d, 'd>) -> Result<usize> {

@@ -1,0 +1,255 @@
+//! `<attach>` of MJCF: a body of another model with all that it carries, or another model whole.
+//!
+//! Formula  names are prefix + name + the suffix of enclosing copies; the body keeps its pose, now
+//!          in the frame of `<attach>`
+//! Why so   the other model is read by itself, with its own settings and default classes. Its
+//!          constraints, actuators and excluded contacts come along if all their bodies do, as in
+//!          MuJoCo; its key frames do not
+//! Fails    more than [`MOST_MODELS`] models, or [`DEEPEST_MODEL`] of them inside one another
+//! Source   mujoco.readthedocs.io, XML reference, attach, asset/model
+//! Checked  tests/formats/mjcf_copies.rs::attached_*
+
+use std::rc::Rc;
+
+use roxmltree::Node;
+
+use super::Mjcf;
+use super::attributes::used;
+use super::copies::{Kind, Placed};
+use super::files;
+use super::part::{Nesting, Part, Subtree, report_of_parts};
+use crate::error::{Error, Result, shown};
+use crate::model::formats::text_file;
+use crate::model::{Collision, JointKind, Link, LoadReport, LoopJointSpec, Visual};
+use crate::spatial::{Pose, Rotation, Vec3};
+
+const MOST_MODELS: usize = 100;
+const DEEPEST_MODEL: usize = 10;
+
+impl<'d> Mjcf<'d> {
+    /// Reads the models that this one may attach.
+    pub(super) fn parts(&mut self, nesting: Nesting<'_>) -> Result<()> {
+        for node in self.files.section("asset").into_iter().filter(|n| n.has_tag_name("model")) {
+            self.reader.unread_attributes(node, &used("model"));
+            let file = self.reader.required(node, "file")?.trim();
+            let refuse = |message: String| Err(self.reader.refuse(node, "file", message));
+            nesting.models.set(nesting.models.get() + 1);
+            if nesting.models.get() > MOST_MODELS || nesting.depth >= DEEPEST_MODEL {
+                return refuse(format!(
+                    "models attach more than {MOST_MODELS} models, or {DEEPEST_MODEL} inside one \
+                     another"
+                ));
+            }
+            let path = files::beside(self.reader.source.path, self.reader.path_of(node), file);
+            let text = match text_file::read(&path) {
+                Ok(file) => file.text,
+                Err(Error::Io { path, message, .. }) => {
+                    return refuse(format!("cannot read {}: {message}", shown(&path)));
+                }
+                Err(error) => return Err(error),
+            };
+            let inner = Nesting { depth: nesting.depth + 1, ..nesting };
+            let part = super::with_model(&text, &path, inner, |it, _| Ok(it.into_part()))?;
+            let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+            let name = node.attribute("name").map(|n| n.trim().to_owned()).or(stem);
+            self.attachable.insert(name.unwrap_or_default(), Rc::new(part));
+        }
+        Ok(())
+    }
+
+    fn into_part(mut self) -> Part {
+        if self.files.section("actuator").is_empty() && !self.has_attached_actuators {
+            // All joints are actuated only if the model that attaches this one has no actuator.
+            self.joints.iter_mut().for_each(|j| j.actuated = false);
+        }
+        let mut report = LoadReport::default();
+        self.reader.report(&self.files.roots(), &mut report);
+        report_of_parts(&self.attachable, &mut report);
+        Part {
+            links: self.links,
+            joints: self.joints,
+            loops: self.loops,
+            disabled_collisions: self.disabled_collisions,
+            sites: self.sites,
+            starts: self.starts,
+            world: self.world,
+            first_joint: self.first_joint,
+            path: self.reader.source.path.to_owned(),
+            report,
+        }
+    }
+
+    /// The part that an `<attach>` brings, its subtree, and the prefix of its names.
+    fn part_of(&self, node: Node<'d, 'd>) -> Result<(Rc<Part>, Subtree, &'d str)> {
+        let model = self.reader.required(node, "model")?.trim();
+        let Some(part) = self.attachable.get(model) else {
+            let unknown = Error::unknown("model", model, self.attachable.keys());
+            return Err(self.reader.refuse(node, "model", unknown.to_string()));
+        };
+        let body = node.attribute("body").map(str::trim).filter(|b| !b.is_empty());
+        let Some(tree) = part.subtree(body) else {
+            let known = part.first_joint.keys();
+            let unknown = Error::unknown("body", body.unwrap_or(""), known);
+            return Err(self.reader.refuse(node, "body", unknown.to_string()));
+        };
+        Ok((Rc::clone(part), tree, node.attribute("prefix").map_or("", str::trim)))
+    }
+
+    /// The names that an `<attach>` brings, without the suffix of a copy.
+    pub(super) fn attached_names(&self, node: Node<'d, 'd>) -> Result<Vec<(Kind, String)>> {
+        let (part, tree, prefix) = self.part_of(node)?;
+        let joints = part.joints[tree.joints.clone()].iter().map(|j| (Kind::Joint, &j.name));
+        let sites = part.sites.iter().filter(|s| tree.links.contains(&s.1) || tree.is_whole);
+        let all = tree.links.iter().map(|l| (Kind::Body, l)).chain(joints);
+        let all = all.chain(sites.map(|s| (Kind::Site, &s.0)));
+        Ok(all.map(|(kind, name)| (kind, format!("{prefix}{name}"))).collect())
+    }
+
+    /// Attaches a part to a link.
+    pub(super) fn attach(&mut self, placed: &Placed<'d>, parent: &str) -> Result<()> {
+        let (node, place) = (placed.node, placed.place);
+        self.reader.unread_attributes(node, &used("attach"));
+        let (part, tree, prefix) = self.part_of(node)?;
+        let name = |own: &str| format!("{prefix}{own}{}", placed.suffix);
+        let first = self.joints.len();
+        for (i, joint) in tree.joints.clone().zip(&part.joints[tree.joints.clone()]) {
+            let mut own = joint.clone();
+            own.name = name(&joint.name);
+            (own.parent, own.child) = (name(&joint.parent), name(&joint.child));
+            let is_new = self.given_joints.insert(own.name.clone());
+            if !(is_new && self.given_bodies.insert(own.child.clone())) {
+                let (a, b) = (&own.name, &own.child);
+                let message = format!("there is a joint '{a}' or a body '{b}' already");
+                return Err(self.reader.refuse(node, "prefix", message));
+            }
+            let is_free = own.kind == JointKind::Free;
+            if tree.is_first(i, joint) {
+                parent.clone_into(&mut own.parent);
+                if is_free && parent != "world" {
+                    let message =
+                        format!("'{}' is a free joint, and '{parent}' not the world", own.name);
+                    return Err(self.reader.refuse(node, "body", message));
+                }
+                if !is_free {
+                    own.parent_from_joint = place * own.parent_from_joint;
+                }
+            }
+            let leader = own.mimic.as_mut();
+            let is_led = leader.is_some_and(|mimic| {
+                let inside = part.joints[tree.joints.clone()].iter().any(|j| j.name == mimic.joint);
+                mimic.joint = name(&mimic.joint);
+                !inside
+            });
+            if is_led {
+                own.mimic = None;
+                self.note_left_out(node);
+            }
+            self.has_attached_actuators |= own.actuated;
+            for (_, q) in part.starts.iter().filter(|s| s.0 == joint.name) {
+                let q = if is_free { moved(place, q) } else { q.clone() };
+                self.starts.push((own.name.clone(), q));
+            }
+            self.joints.push(own);
+        }
+        for (body, index) in part.first_joint.iter().filter(|f| tree.joints.contains(f.1)) {
+            self.first_joint.insert(name(body), first + index - tree.joints.start);
+        }
+        let at = |part: &Part, link: &str| part.world.get(link).copied().unwrap_or_default();
+        let here = self.world.get(parent).copied().unwrap_or_default();
+        let world_from_base = here * place * at(&part, &tree.base).inverse();
+        for link in part.links.iter().filter(|l| tree.links.contains(&l.name)) {
+            let mut own = Link { name: name(&link.name), ..link.clone() };
+            rename(&mut own.visuals, &mut own.collisions, &name);
+            self.world.insert(own.name.clone(), world_from_base * at(&part, &link.name));
+            self.links.push(own);
+        }
+        if tree.is_whole {
+            self.attach_shapes(&part.links[0], parent, place, &name);
+            let shapes = &part.links[0];
+            if parent != "world" && !(shapes.visuals.is_empty() && shapes.collisions.is_empty()) {
+                let why = "they are shapes of the body here, without mass";
+                self.reader.note(node, "geoms of an attached world", why, parent);
+            }
+        }
+        for (site, link, pose) in &part.sites {
+            if tree.links.contains(link) {
+                self.sites.push((name(site), name(link), *pose));
+            } else if tree.is_whole {
+                self.sites.push((name(site), parent.to_owned(), place * *pose));
+            }
+        }
+        for pair in &part.disabled_collisions {
+            if pair.iter().all(|link| tree.links.contains(link)) {
+                self.disabled_collisions.push([name(&pair[0]), name(&pair[1])]);
+            }
+        }
+        for joint in &part.loops {
+            let ends = [(&joint.a, joint.link_a_from_joint), (&joint.b, joint.link_b_from_joint)];
+            let inside = ends.map(|(link, _)| tree.links.contains(link));
+            if inside == [false, false] {
+                continue;
+            }
+            let ends = ends.map(|(link, pose)| match tree.links.contains(link) {
+                true => Some((name(link), pose)),
+                false if tree.is_whole => Some((parent.to_owned(), place * pose)),
+                false => (link == "world").then(|| (link.clone(), world_from_base * pose)),
+            });
+            let [Some((a, on_a)), Some((b, on_b))] = ends else {
+                self.note_left_out(node);
+                continue;
+            };
+            self.loops.push(LoopJointSpec {
+                name: name(&joint.name),
+                a,
+                b,
+                link_a_from_joint: on_a,
+                link_b_from_joint: on_b,
+                ..joint.clone()
+            });
+        }
+        Ok(())
+    }
+
+    fn note_left_out(&mut self, node: Node<'d, 'd>) {
+        let why = "it ties a body that is attached to one that is not; MuJoCo leaves it out";
+        let model = node.attribute("model").unwrap_or("");
+        self.reader.note(node, "<equality> of an attached model", why, model);
+    }
+
+    /// The shapes of an attached world.
+    fn attach_shapes(
+        &mut self,
+        world: &Link,
+        parent: &str,
+        place: Pose,
+        name: &impl Fn(&str) -> String,
+    ) {
+        let Some(link) = self.links.iter_mut().find(|l| l.name == parent) else { return };
+        let (mut visuals, mut collisions) = (world.visuals.clone(), world.collisions.clone());
+        rename(&mut visuals, &mut collisions, name);
+        for pose in visuals
+            .iter_mut()
+            .map(|v| &mut v.link_from_shape)
+            .chain(collisions.iter_mut().map(|c| &mut c.link_from_shape))
+        {
+            *pose = place * *pose;
+        }
+        link.visuals.extend(visuals);
+        link.collisions.extend(collisions);
+    }
+}
+
+fn rename(visuals: &mut [Visual], collisions: &mut [Collision], name: &impl Fn(&str) -> String) {
+    let names = visuals.iter_mut().map(|v| &mut v.name);
+    for own in names.chain(collisions.iter_mut().map(|c| &mut c.name)).filter(|n| !n.is_empty()) {
+        *own = name(own);
+    }
+}
+
+/// The coordinates of a free body whose world is placed in another one.
+fn moved(place: Pose, q: &[f64]) -> Vec<f64> {
+    let [x, y, z, a, b, c] = *q else { return q.to_vec() };
+    let rotation = Rotation::exp(Vec3::new(a, b, c));
+    let pose = place * Pose { rotation, translation: Vec3::new(x, y, z) };
+    [pose.translation.to_array(), pose.rotation.log().to_array()].concat()
+}
