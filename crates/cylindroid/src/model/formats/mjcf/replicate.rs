@@ -126,7 +126,7 @@ impl<'d> Mjcf<'d> {
         let copies = suffixes.enumerate().map(|(i, own)| {
             let rotation = self.compiler.euler(euler.map(|angle| angle * i as f64));
             let place = of.place * Pose { rotation, translation };
-            translation = translation + rotation * offset;
+            translation += rotation * offset;
             let suffix = format!("{own}{}", of.suffix).into();
             Placed { node, place, class, suffix }
         });
