@@ -192,6 +192,10 @@ impl<'d> Mjcf<'d> {
                 second_follows
                     .and_then(|why| self.tie(first, second, -b / a, constant / a).and(Some(why)))
             }
+            [_, _, _, ..] => Some(
+                "only a fixed tendon over two joints ties them together here: a joint follows one \
+                 other joint, not a sum of several",
+            ),
             _ => Some("only a fixed tendon over two joints ties them together here"),
         };
         if let Some(why) = why {
