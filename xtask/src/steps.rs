@@ -51,7 +51,7 @@ pub(crate) fn test() -> Result<()> {
     step("tests", || {
         run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
     })?;
-    step("forms of the kernels", || simd(&robots))?;
+    step("forms of the kernels", || in_all_forms(&robots, &OF_KERNELS))?;
     step("viewer in a browser", viewer::test)?;
     step("Python package", python::test)
 }
@@ -76,9 +76,25 @@ const OF_ALL_FORMS: [&str; 16] = [
     "symmetric_eigen::",
 ];
 
-/// The chosen tests with each form of the kernels but the best that the processor has, with which
-/// all tests run: without registers, and with those of AVX2.
+/// Those of them that call the kernels of many configurations directly: seconds.
+const OF_KERNELS: [&str; 7] = [
+    "batch::",
+    "inverse_batch::",
+    "kinematics::",
+    "manipulability::batch::",
+    "pinocchio::",
+    "svd::",
+    "symmetric_eigen::",
+];
+
+/// All chosen tests with each form of the kernels.
 pub(crate) fn simd(robots: &Path) -> Result<()> {
+    in_all_forms(robots, &OF_ALL_FORMS)
+}
+
+/// These tests with each form of the kernels but the best that the processor has, with which all
+/// tests run: without registers, and with those of AVX2.
+fn in_all_forms(robots: &Path, chosen: &[&str]) -> Result<()> {
     let mut forms = vec!["scalar"];
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx512f") {
@@ -87,7 +103,7 @@ pub(crate) fn simd(robots: &Path) -> Result<()> {
     for form in forms {
         println!("CYLINDROID_SIMD={form}");
         let tests = ["test", "--quiet", "--package", "cylindroid", "--test", "it", "--"];
-        run(cargo(&[&tests[..], &OF_ALL_FORMS].concat())
+        run(cargo(&[&tests[..], chosen].concat())
             .env("CYLINDROID_TEST_ROBOTS", robots)
             .env("CYLINDROID_SIMD", form))?;
     }
