@@ -55,7 +55,7 @@ cargo xtask <task>
             installs (needs crates.io), and licences of npm and Python packages (needs PyPI);
             --advisories reads those of RustSec (needs github.com)
   simd      runs the tests of laws once for each form of the kernels that the processor has beside
-            its best (CYLINDROID_SIMD); a step of test
+            its best (CYLINDROID_SIMD); test runs those that call the kernels
   limits [millions] [first round]
             runs 10 million servo steps (release build) over random robots, tasks, limits, starts
             and pushes, and prints every limit that is left, with the round that repeats it
