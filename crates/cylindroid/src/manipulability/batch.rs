@@ -16,6 +16,8 @@
 //!          register. Every configuration is independent of its place and of the number of threads
 //! Checked  tests/it/manipulability/batch.rs
 
+use std::ops::Range;
+
 use super::closed_chain_batched::{Found, Kernel};
 use super::efficiency::Manipulability;
 use super::metrics::Metrics;
@@ -111,6 +113,9 @@ impl ManipulabilityBatch {
         "smallest",
         "anisotropy",
     ];
+
+    /// The places of the whole numbers among them.
+    pub const COUNTS: Range<usize> = 2..11;
 
     /// The place of a number in a result.
     #[must_use]

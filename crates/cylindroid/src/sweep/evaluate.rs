@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::slice::IterMut;
 
 use super::options::{SweepOptions, VelocityMetric};
-use super::quantity::{COUNTS, PITCHES, Quantity};
+use super::quantity::{PITCHES, Quantity};
 use super::singular_values::SingularValues;
 use super::source::Configurations;
 use super::table::{Column, Values};
@@ -21,13 +21,12 @@ use crate::manipulability::{BatchOptions, ManipulabilityBatch, Metrics};
 use crate::model::{Dimension, Mechanism};
 use crate::screws::{ScrewOptions, ScrewSystem};
 use crate::spatial::Mat3;
+use crate::task::Task;
 
 /// Rows computed at once.
 const BLOCK: usize = 1024;
 /// Numbers of a pose.
 const POSE: usize = 16;
-/// The components of a twist.
-const COMPONENTS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
 
 /// Computes rows.
 #[derive(Debug, Clone)]
@@ -149,7 +148,7 @@ impl Evaluator {
         use Quantity as Q;
         let (n, count, k) = (self.mechanism.n(), s.count, self.values());
         let q = &s.q[..count * n];
-        let poses = &mut s.poses[..if self.wants(&[Q::Pose]) { count * POSE } else { 0 }];
+        let poses = s.poses.get_mut(..count * POSE).unwrap_or_default();
         let jacobians = &mut s.jacobians[..];
         let reference = ReferenceFrame::LocalWorldAligned;
         let jacobians: &[f64] = if jacobians.is_empty() {
@@ -250,7 +249,7 @@ impl Evaluator {
             let first = start + (i * ManipulabilityBatch::CHUNK) as u64;
             batch.analyse_into(q, out).map_err(|error| at_row(error, first))?;
         }
-        for (i, name) in ManipulabilityBatch::COLUMNS.iter().enumerate() {
+        for i in 0..WIDTH {
             let own = found.iter().skip(i).step_by(WIDTH).copied();
             match columns.next() {
                 Some(Values::Numbers(column)) => column.extend(own),
@@ -260,7 +259,7 @@ impl Evaluator {
                     reason = "small whole numbers"
                 )]
                 Some(Values::Counts(column)) => column.extend(own.map(|x| x as u64)),
-                _ => debug_assert!(COUNTS.contains(name)),
+                _ => {}
             }
         }
         Ok(())
@@ -334,8 +333,8 @@ fn components(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>> {
     }
     let mut chosen = Vec::new();
     for name in names {
-        let found = known.iter().find(|i| COMPONENTS[**i] == name);
-        let words = known.iter().map(|i| COMPONENTS[*i]);
+        let found = known.iter().find(|i| Task::COMPONENTS[**i] == name);
+        let words = known.iter().map(|i| Task::COMPONENTS[*i]);
         let i = *found.ok_or_else(|| Error::unknown("component", name, words))?;
         if chosen.contains(&i) {
             return Err(Error::InvalidOption {

@@ -136,12 +136,14 @@ impl Quantity {
                 std::iter::once(class).chain((1..=PITCHES).map(pitch)).collect()
             }
             Self::Measures => {
-                let columns = ManipulabilityBatch::COLUMNS.iter();
+                let columns = ManipulabilityBatch::COLUMNS.iter().enumerate();
                 columns
-                    .map(|&name| match name {
+                    .map(|(i, &name)| match name {
                         "closure_distance" => number(name, "m"),
                         "closure_angle" => number(name, "rad"),
-                        name if COUNTS.contains(&name) => Column::count(name, self.description()),
+                        name if ManipulabilityBatch::COUNTS.contains(&i) => {
+                            Column::count(name, self.description())
+                        }
                         "volume" | "largest" | "smallest" => number(name, "of the metric"),
                         _ => number(name, "1"),
                     })
@@ -153,16 +155,3 @@ impl Quantity {
 
 /// Principal pitches of a screw system at most.
 pub(super) const PITCHES: usize = 3;
-
-/// The whole numbers among the measures.
-pub(super) const COUNTS: [&str; 9] = [
-    "closed",
-    "dof",
-    "redundancy",
-    "indeterminacy",
-    "coordinate",
-    "internal",
-    "zero_torque",
-    "hyperstatic",
-    "idle",
-];
