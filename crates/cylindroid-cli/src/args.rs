@@ -23,7 +23,7 @@ pub(crate) use move_to::{
 };
 
 pub(crate) use screws::ScrewsArgs;
-pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs};
+pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs, ModelArgs};
 pub(crate) use sweep::SweepArgs;
 pub(crate) use tasks::{FrameTaskArg, TasksArgs};
 pub(crate) use view::ViewArgs;
@@ -115,8 +115,8 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
-    /// Model file or catalogue name
-    pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
 
     #[command(flatten)]
     pub(crate) limits: LimitsArgs,

@@ -97,6 +97,25 @@ impl FromStr for Intervals {
     }
 }
 
+/// A name and a number: `link_a=0.4`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Assignment(String, f64);
+
+impl Assignment {
+    pub(crate) fn pair(&self) -> (&str, f64) {
+        (&self.0, self.1)
+    }
+}
+
+impl FromStr for Assignment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("a name, = and a number are expected")?;
+        Ok(Self(name.trim().to_owned(), number(value)?))
+    }
+}
+
 /// A number for all (`0.5`), for some by name (`left=0.4`), or both, separated by commas.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ByName {

@@ -66,7 +66,7 @@ mod _core {
     #[pymodule_export]
     use crate::mechanism::load::{catalogue, load, parse};
     #[pymodule_export]
-    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism};
+    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, PyParameter};
     #[pymodule_export]
     use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw, PyWaypointMove};
     #[pymodule_export]

@@ -1,11 +1,11 @@
-//! Sweeps: quantities of many configurations, as arrays or in a folder.
+//! Sweeps: quantities of many configurations and designs, as arrays or in a folder.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use cylindroid::sweep::{
-    Axis, Progress, Quantity, Source, Summary, Sweep, SweepOptions, Values, VelocityMetric,
-    WriteOptions, parquet_configurations,
+    Axis, AxisKinds, DesignSpace, ParameterRange, Progress, Quantity, Source, Summary, Sweep,
+    SweepOptions, Values, VelocityMetric, WriteOptions, parquet_configurations,
 };
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -54,7 +54,8 @@ impl PySweepSummary {
 /// Quantities of many configurations: samples within the limits, a grid, or configurations.
 ///
 /// Sample i is a function of `seed` and i alone, and results do not depend on the number of threads.
-/// Exactly one of `samples`, `over` and `configurations` is given.
+/// At most one of `samples`, coordinates in `over`, and `configurations` is given. With parameters of
+/// the mechanism file in `over`, or with `vary`, all of it is computed for each design.
 ///
 /// Parameters
 /// ----------
@@ -67,7 +68,8 @@ impl PySweepSummary {
 ///     Selects one of the sequences.
 /// over : dict of str to (float, float, int), optional
 ///     A grid: of a coordinate its first and last value [rad or m] and the number of values; the
-///     last one changes fastest.
+///     last one changes fastest. Parameters of the mechanism file are axes of a grid of designs; of
+///     designs alone, the configuration is home, or `q`.
 /// q : array_like, (n,), optional
 ///     The other coordinates of a grid [rad or m]. Default: home.
 /// configurations : array_like, (N, n), mapping, DataFrame or path of a Parquet file, optional
@@ -94,12 +96,18 @@ impl PySweepSummary {
 ///     Continue a folder that was interrupted; its finished parts are verified.
 /// threads : int, optional
 ///     Default: as many as the machine has.
+/// vary : dict of str to (float, float), optional
+///     Ranges of parameters for sampled designs, a Sobol' sequence too.
+/// designs : int
+///     Their number.
 ///
 /// Returns
 /// -------
 /// dict of str to ndarray, (N,), or SweepSummary
-///     The columns: 'index', the coordinates by name, then those of the quantities. With `out` the
-///     summary of the folder.
+///     The columns: 'index', the coordinates by name, then those of the quantities. Of designs,
+///     'design', 'design_valid' and the parameters precede the coordinates; a design whose file
+///     cannot be loaded with its values has 'design_valid' 0 and NaN. With `out` the summary of the
+///     folder.
 ///
 /// Raises
 /// ------
@@ -122,9 +130,10 @@ impl PySweepSummary {
 /// >>> list(found)[-3:]
 /// ['qy', 'qz', 'yoshikawa']
 #[pyfunction]
-#[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None, configurations = None,
-    quantities = None, frame = None, tool = None, task = None, metric = "unit", length = None,
-    out = None, resume = false, threads = None))]
+#[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None,
+    configurations = None, quantities = None, frame = None, tool = None, task = None, metric = "unit", length = None,
+    out = None, resume = false, threads = None,
+    vary = None, designs = 0))]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
@@ -143,21 +152,38 @@ pub(crate) fn sweep<'py>(
     #[pyo3(from_py_with = argument)] out: Option<PathBuf>,
     #[pyo3(from_py_with = argument)] resume: bool,
     #[pyo3(from_py_with = argument)] threads: Option<usize>,
+    #[pyo3(from_py_with = argument)] vary: Option<Bound<'py, PyDict>>,
+    #[pyo3(from_py_with = argument)] designs: u64,
 ) -> Result<Bound<'py, PyAny>> {
     let robot = &*mechanism;
     let mechanism = robot.inner.clone();
-    let source = match (samples, over, configurations) {
-        (Some(count), None, None) => Source::Samples { count, seed },
-        (None, Some(over), None) => {
-            let rest = match &q {
-                None => Vec::new(),
-                Some(q) => q.vector("q")?.to_vec(),
-            };
-            Source::Grid { axes: axes(&over)?, rest }
+    let over = over.as_ref().map_or(Ok(Vec::new()), axes)?;
+    let ranges = vary.as_ref().map_or(Ok(Vec::new()), ranges)?;
+    let split = AxisKinds::of(over, &mechanism)?;
+    let space = match (split.parameters.is_empty(), ranges.is_empty()) {
+        (true, true) => None,
+        (false, true) => Some(DesignSpace::Grid(split.parameters)),
+        (true, false) => Some(DesignSpace::Samples { ranges, count: designs, seed }),
+        (false, false) => {
+            let reason = "designs are a grid or samples: give parameters in over or in vary";
+            return Err(Failure::option("vary", "a dict", reason));
         }
-        (None, None, Some(configurations)) => Source::Configurations(rows(robot, &configurations)?),
+    };
+    let rest = match &q {
+        None => Vec::new(),
+        Some(q) => q.vector("q")?.to_vec(),
+    };
+    let grid = !split.coordinates.is_empty();
+    let source = match (samples, grid, configurations) {
+        (Some(count), false, None) => Source::Samples { count, seed },
+        (None, true, None) => Source::Grid { axes: split.coordinates, rest },
+        (None, false, Some(configurations)) => {
+            Source::Configurations(rows(robot, &configurations)?)
+        }
+        (None, false, None) if space.is_some() && rest.is_empty() => Source::Home,
+        (None, false, None) if space.is_some() => Source::Configurations(rest),
         _ => {
-            let reason = "give one of samples, over and configurations";
+            let reason = "give one of samples, coordinates in over, and configurations";
             return Err(Failure::option("samples", "", reason));
         }
     };
@@ -180,7 +206,7 @@ pub(crate) fn sweep<'py>(
         }),
         metric: VelocityMetric::named(metric)?,
         length,
-        ..SweepOptions::default()
+        part_rows: if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS },
     };
     let threads = match threads {
         None => None,
@@ -192,7 +218,10 @@ pub(crate) fn sweep<'py>(
     if resume && out.is_none() {
         return Err(Failure::option("resume", "True", "name the folder with out"));
     }
-    let sweep = Sweep::new(&mechanism, options)?;
+    let sweep = match space {
+        None => Sweep::new(&mechanism, options)?,
+        Some(space) => Sweep::of_designs(&robot.parametric()?, space, options)?,
+    };
     // Signals, Ctrl-C among them, are looked for a few times a second.
     let mut raised = None;
     let observe = |_: &Progress| {
@@ -236,6 +265,16 @@ fn axes(over: &Bound<'_, PyDict>) -> Result<Vec<Axis>> {
             let name: String = entry("over", &name)?;
             let (from, to, count) = entry("over", &values)?;
             Ok(Axis { name, from, to, count })
+        })
+        .collect()
+}
+
+fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
+    vary.iter()
+        .map(|(name, values)| {
+            let name: String = entry("vary", &name)?;
+            let (from, to) = entry("vary", &values)?;
+            Ok(ParameterRange { name, from, to })
         })
         .collect()
 }

@@ -211,3 +211,38 @@ def test_a_mechanism_without_joints():
     assert r.jacobian([]).shape == (6, 0)
     assert r.jacobian(np.zeros((3, 0))).shape == (3, 6, 0)
     assert r.fk(np.zeros((3, 0))).shape == (3, 4, 4)
+
+
+FIVE_BAR = pathlib.Path(__file__).parents[2] / "cylindroid/tests/data/five_bar_parameters.toml"
+
+
+def test_parameters_of_a_mechanism_file():
+    r = cy.load(FIVE_BAR, parameters={"crank": 0.4, "width": 0.0})
+    own = {p.name: p for p in r.parameters}
+    assert list(own) == ["crank", "rod", "width", "height"]
+    assert (own["crank"].value, own["crank"].lower, own["crank"].upper) == (0.4, 0.2, 1.0)
+    assert (own["crank"].unit, own["crank"].description) == ("m", "both cranks")
+    assert own["height"].expression.startswith("crank + sqrt") and own["height"].upper == np.inf
+    assert r.fk(r.home)[1, 3] == own["height"].value == 1.0
+    assert repr(own["crank"]) == "Parameter(crank = 0.4 m)"
+    text = cy.parse(FIVE_BAR.read_text(), "toml", FIVE_BAR, {"crank": 0.4, "width": 0.0})
+    for same in (pickle.loads(pickle.dumps(r)), pickle.loads(pickle.dumps(text)), copy.copy(r)):
+        assert [p.value for p in same.parameters] == [p.value for p in r.parameters]
+    assert cy.load("panda").parameters == []
+
+
+def test_wrong_parameters_are_refused():
+    with pytest.raises(cy.UnknownNameError, match="nearest: crank"):
+        cy.load(FIVE_BAR, parameters={"cranck": 0.4})
+    with pytest.raises(cy.InvalidOptionError, match="its range is 0.2 to 1"):
+        cy.load(FIVE_BAR, {"crank": 1.5})
+    with pytest.raises(cy.NotFiniteError):
+        cy.load(FIVE_BAR, {"crank": np.nan})
+    with pytest.raises(cy.ArgumentTypeError, match="parameters"):
+        cy.load(FIVE_BAR, {"crank": "long"})
+    with pytest.raises(cy.ModelFileError, match="is not a number"):
+        cy.load(FIVE_BAR, {"rod": 0.25})
+    with pytest.raises(cy.InvalidOptionError, match="has no parameters"):
+        cy.load("panda", {"crank": 0.4})
+    with pytest.raises(cy.InvalidOptionError, match="only mechanism files"):
+        cy.parse("<robot name='r'><link name='a'/></robot>", parameters={"a": 1})

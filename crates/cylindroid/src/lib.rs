@@ -17,7 +17,7 @@
 //!
 //! | to ... | start at |
 //! |---|---|
-//! | load or build a robot or mechanism | [`load`], [`catalogue`], [`model::Builder`], [`Mechanism`] |
+//! | load or build a robot or mechanism | [`load`], [`ParametricModel`], [`catalogue`], [`model::Builder`], [`Mechanism`] |
 //! | compute forward kinematics and Jacobians | [`State`]; in a loop [`kinematics::Chain`]; for many configurations [`kinematics::KinematicsBatch`] |
 //! | find distances between links and to obstacles | [`collision::CollisionModel`] |
 //! | solve inverse kinematics | [`ik::solve`], [`ik::Solver`]; in closed form [`ik::Analytic`] |
@@ -71,7 +71,7 @@ mod task;
 pub mod tolerance;
 
 #[cfg(feature = "formats")]
-pub use closure::{load, load_file, load_text};
+pub use closure::{ParametricModel, load, load_file, load_text, load_with_parameters};
 pub use control::{Servo, ServoOptions};
 pub use error::{Error, FileError, Result};
 pub use inverse::{Inverse, Method};

@@ -1,16 +1,28 @@
-//! Arguments of several commands: a model at a configuration, a frame.
+//! Arguments of several commands: a model, its configuration, a frame.
 
 use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::values::{Joints, Numbers};
+use crate::values::{Assignment, Joints, Numbers};
+
+/// A model.
+#[derive(Debug, Args)]
+pub(crate) struct ModelArgs {
+    /// Model file or catalogue name
+    #[arg(id = "model", value_name = "MODEL")]
+    pub(crate) name: String,
+
+    /// Value of a parameter of a mechanism file in place of the file's; repeatable
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    pub(crate) parameter: Vec<Assignment>,
+}
 
 /// A model at a configuration.
 #[derive(Debug, Args)]
 pub(crate) struct ConfigurationArgs {
-    /// Model file or catalogue name
-    pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
 
     /// Configuration [rad or m]: numbers in the order of `info` (`0,-0.8,...`), `name=value,...`
     /// with the other coordinates at home, `home`, or `zero`

@@ -4,10 +4,10 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
-use cylindroid::sweep::{Axis, VelocityMetric};
+use clap::{ArgGroup, Args, ValueEnum};
+use cylindroid::sweep::{Axis, ParameterRange, VelocityMetric};
 
-use super::FrameArgs;
+use super::{FrameArgs, ModelArgs};
 use crate::values::Joints;
 
 pub(crate) const ABOUT: &str = "\
@@ -17,13 +17,19 @@ Samples are points of a scrambled Sobol' sequence: sample i depends on the seed 
 --out, statistics of each column are printed. With --out, the rows are written into a folder of \
 Parquet files, which can be interrupted and resumed: the files are the same to the byte whatever the \
 number of threads and interruptions. Column names are those of coordinates and quantities; units \
-are in the manifest.";
+are in the manifest.
+
+Parameters of a mechanism file in --over or --vary are designs, each with all configurations; alone, \
+with the configuration of --q. A design that cannot be loaded has rows with design_valid 0 and no \
+numbers.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
   cylindroid sweep panda --samples 1e4 --quantities yoshikawa,condition,limit_distance
   cylindroid sweep panda --samples 1e5 --quantities pose,jacobian,singular_values --out map
   cylindroid sweep ur5e --over shoulder_lift_joint=-3:0:61 --over elbow_joint=0:3:61 --task x,y,z
+  cylindroid sweep docs/designs.toml --over crank=0.4:0.7:5 --over point_x=-0.2:0.2:9 --quantities measures
+  cylindroid sweep docs/designs.toml --vary crank=0.4:0.7 --designs 100 --quantities measures
   cylindroid sweep stewart --configurations configurations.csv --quantities pose,measures
 
 Quantities:
@@ -41,34 +47,45 @@ For closed chains: pose, limit_distance and measures, of --configurations. Exit 
 interrupt.";
 
 #[derive(Debug, Args)]
+#[command(group = ArgGroup::new("sampled").multiple(true))]
 pub(crate) struct SweepArgs {
-    /// Model file or catalogue name
-    pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
 
     /// Number of samples within the position limits, e.g. 1e6; joints without limits rotate
     /// through -pi to pi
-    #[arg(long, value_name = "N", allow_hyphen_values = true)]
-    #[arg(required_unless_present_any = ["over", "configurations"])]
+    #[arg(long, value_name = "N", group = "sampled", allow_hyphen_values = true)]
+    #[arg(required_unless_present_any = ["over", "vary", "configurations"])]
     pub(crate) samples: Option<Count>,
 
-    /// Selects one of the sample sequences
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "samples")]
+    /// Selects one of the sequences of samples and of designs
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "sampled")]
     #[arg(allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
-    /// An axis of a grid [rad or m]: a coordinate, its first and last value and the number of
-    /// values; repeat for further axes, of which the last changes fastest
-    #[arg(long, value_name = "NAME=A:B:N", conflicts_with = "samples", allow_hyphen_values = true)]
+    /// An axis of a grid: a coordinate [rad or m] or a parameter, its first and last value and the
+    /// number of values; repeat for further axes, of which the last changes fastest
+    #[arg(long, value_name = "NAME=A:B:N", allow_hyphen_values = true)]
     pub(crate) over: Vec<AxisArg>,
 
-    /// The other coordinates of a grid [rad or m], as for other commands
+    /// The range of a parameter for sampled designs; repeatable
+    #[arg(long, value_name = "NAME=A:B", requires = "designs", allow_hyphen_values = true)]
+    pub(crate) vary: Vec<RangeArg>,
+
+    /// Number of sampled designs, points of a scrambled Sobol' sequence
+    #[arg(long, value_name = "N", requires = "vary", group = "sampled")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) designs: Option<Count>,
+
+    /// The other coordinates of a grid, or the configuration of all designs [rad or m], as for other
+    /// commands
     #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
-    #[arg(requires = "over")]
+    #[arg(conflicts_with_all = ["samples", "configurations"])]
     pub(crate) q: Joints,
 
     /// A .csv, .json or .parquet file with a configuration in each row [rad or m]. Columns with
     /// names may be in any order; others than those of the coordinates are ignored
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "over"])]
+    #[arg(long, value_name = "FILE", conflicts_with = "samples")]
     pub(crate) configurations: Option<PathBuf>,
 
     /// The quantities of each configuration, see below
@@ -101,7 +118,8 @@ pub(crate) struct SweepArgs {
     #[arg(long, requires = "out")]
     pub(crate) resume: bool,
 
-    /// Rows of a file: the unit of work, which each thread has once in memory [default: 65536]
+    /// Rows of a file: the unit of work, which each thread has once in memory [default: 65536,
+    /// of designs 1024]
     #[arg(long, value_name = "N", requires = "out", allow_hyphen_values = true)]
     pub(crate) part_rows: Option<Count>,
 
@@ -147,6 +165,23 @@ impl FromStr for Count {
         let scientific = || text.parse::<f64>().ok().and_then(whole).map(|x| x as u64);
         let count = text.parse().ok().or_else(scientific);
         count.map(Self).ok_or_else(|| format!("'{text}' is not a whole number such as 1000 or 1e7"))
+    }
+}
+
+/// `NAME=A:B`.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RangeArg(pub(crate) ParameterRange);
+
+impl FromStr for RangeArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("'{text}' is not of the form name=smallest:largest");
+        let (name, values) = text.rsplit_once('=').ok_or_else(wrong)?;
+        let (from, to) = values.split_once(':').ok_or_else(wrong)?;
+        let number = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+        let name = name.trim().to_owned();
+        Ok(Self(ParameterRange { name, from: number(from)?, to: number(to)? }))
     }
 }
 

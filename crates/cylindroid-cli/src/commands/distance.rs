@@ -9,7 +9,7 @@ use cylindroid::model::formats::srdf;
 use serde::Serialize;
 
 use crate::args::{CollisionArgs, DistanceArgs};
-use crate::commands::shared::{Style, answer, configuration};
+use crate::commands::shared::{Style, answer, configuration, load};
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
@@ -73,7 +73,7 @@ pub(crate) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.configuration.model)?;
+    let robot = load(&args.configuration.model, &[])?;
     let mut model = collision_model(&robot, &args.collision)?;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let mut near: Vec<NearPair> = Vec::new();

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use serde::Serialize;
 
 use crate::args::FkArgs;
-use crate::commands::shared::{Style, configuration, end_effector};
+use crate::commands::shared::{Style, configuration, end_effector, load};
 use crate::output::{self, Align, PoseJson};
 
 #[derive(Debug, Serialize)]
@@ -37,7 +37,7 @@ struct FrameJson<'a> {
 }
 
 pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.configuration.model)?;
+    let robot = load(&args.configuration.model, &[])?;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let outside_limits = output::outside_limits(&robot, state.q());
     let joint_names = output::joint_names(&robot);

@@ -13,7 +13,7 @@ use self::goals::{GoalJson, Goals, controlled, first_frame, goals};
 use super::target::errors;
 use crate::args::IkArgs;
 use crate::commands::distance::collision_model;
-use crate::commands::shared::{Style, answer, configuration, limited};
+use crate::commands::shared::{Style, answer, configuration, limited, load};
 use crate::output::{self, Align, PoseJson, number};
 
 #[derive(Debug, Serialize)]
@@ -112,7 +112,7 @@ impl From<&MissReason> for ReasonJson {
 }
 
 pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = limited(cylindroid::load(&args.configuration.model)?, &args.limits)?;
+    let robot = limited(load(&args.configuration.model, &[])?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
     let Goals { all: goals, description, half_spaces, posture } = goals(args, &robot, &start)?;
     let gap = args.avoidance.gap();

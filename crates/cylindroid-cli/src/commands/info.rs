@@ -5,11 +5,11 @@ use std::process::ExitCode;
 
 use cylindroid::Mechanism;
 use cylindroid::ik::Analytic;
-use cylindroid::model::Joint;
+use cylindroid::model::{Joint, Parameter};
 use serde::Serialize;
 
 use crate::args::InfoArgs;
-use crate::commands::shared::{Style, limited};
+use crate::commands::shared::{Style, limited, load};
 use crate::output::{self, Align, MimicJson};
 
 #[derive(Debug, Serialize)]
@@ -29,6 +29,7 @@ pub(crate) struct InfoJson<'a> {
     tool_choice: String,
     home: &'a [f64],
     reach: f64,
+    parameters: Vec<ParameterJson<'a>>,
     inverse_kinematics: AnalyticJson,
     report: ReportJson<'a>,
 }
@@ -92,6 +93,31 @@ struct FrameJson<'a> {
     link: &'a str,
 }
 
+#[derive(Debug, Serialize)]
+struct ParameterJson<'a> {
+    name: &'a str,
+    value: f64,
+    lower: f64,
+    upper: f64,
+    unit: &'a str,
+    description: &'a str,
+    expression: &'a str,
+}
+
+impl<'a> From<&'a Parameter> for ParameterJson<'a> {
+    fn from(own: &'a Parameter) -> Self {
+        Self {
+            name: &own.name,
+            value: own.value,
+            lower: own.lower,
+            upper: own.upper,
+            unit: &own.unit,
+            description: &own.description,
+            expression: &own.expression,
+        }
+    }
+}
+
 /// Of the tool frame by formulas, or why not.
 #[derive(Debug, Serialize)]
 struct AnalyticJson {
@@ -114,7 +140,7 @@ struct IgnoredJson<'a> {
 }
 
 pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = limited(cylindroid::load(&args.model)?, &args.limits)?;
+    let robot = limited(load(&args.model, &[])?, &args.limits)?;
     let info = describe(&robot);
     match style {
         Style::Json => output::json(out, &info)?,
@@ -193,6 +219,7 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
         tool_choice: robot.tool_choice().to_string(),
         home: robot.home(),
         reach: robot.reach(),
+        parameters: robot.parameters().iter().map(ParameterJson::from).collect(),
         inverse_kinematics: AnalyticJson { structure, reason },
         report: ReportJson {
             format: robot.report().format,
@@ -258,6 +285,7 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
         writeln!(out)?;
         print_coordinates(out, info, robot)?;
     }
+    print_parameters(out, &info.parameters)?;
     if !info.report.ignored.is_empty() {
         writeln!(out, "\nignored by the loader")?;
         let columns = [("line", Align::Right), ("what", Align::Left), ("why", Align::Left)];
@@ -268,6 +296,34 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
         output::table(out, &columns, rows)?;
     }
     Ok(())
+}
+
+fn print_parameters(out: &mut dyn Write, parameters: &[ParameterJson<'_>]) -> io::Result<()> {
+    if parameters.is_empty() {
+        return Ok(());
+    }
+    let columns = [
+        ("parameter", Align::Left),
+        ("value", Align::Right),
+        ("unit", Align::Left),
+        ("lower", Align::Right),
+        ("upper", Align::Right),
+        ("expression", Align::Left),
+        ("description", Align::Left),
+    ];
+    let rows = parameters.iter().map(|p| {
+        vec![
+            p.name.to_owned(),
+            output::number(p.value),
+            p.unit.to_owned(),
+            output::number(p.lower),
+            output::number(p.upper),
+            p.expression.to_owned(),
+            p.description.to_owned(),
+        ]
+    });
+    writeln!(out)?;
+    output::table(out, &columns, rows)
 }
 
 fn print_coordinates(

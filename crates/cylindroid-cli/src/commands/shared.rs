@@ -4,9 +4,10 @@ use std::process::ExitCode;
 
 use cylindroid::model::Mechanism;
 use cylindroid::model::formats::toml::with_limits_of_file;
-use cylindroid::{EndEffector, Error, Pose, Vec3};
+use cylindroid::{EndEffector, Error, ParametricModel, Pose, Vec3};
 
-use crate::args::{ConfigurationArgs, FrameArgs, LimitsArgs};
+use crate::args::{ConfigurationArgs, FrameArgs, LimitsArgs, ModelArgs};
+use crate::values::Assignment;
 
 /// Output style of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,9 +22,16 @@ pub(crate) fn answer(yes: bool) -> ExitCode {
 }
 
 /// Loads the model, with these joints actuated if any are named.
-pub(crate) fn load(model: &str, actuated: &[String]) -> cylindroid::Result<Mechanism> {
-    let loaded = cylindroid::load(model)?;
+pub(crate) fn load(model: &ModelArgs, actuated: &[String]) -> cylindroid::Result<Mechanism> {
+    let values: Vec<(&str, f64)> = model.parameter.iter().map(Assignment::pair).collect();
+    let loaded = cylindroid::load_with_parameters(&model.name, &values)?;
     if actuated.is_empty() { Ok(loaded) } else { loaded.with_actuated(actuated) }
+}
+
+/// The mechanism file of the model, for other values of its parameters.
+pub(crate) fn parametric(model: &ModelArgs) -> cylindroid::Result<ParametricModel> {
+    let values: Vec<(&str, f64)> = model.parameter.iter().map(Assignment::pair).collect();
+    ParametricModel::read(&model.name, &values)
 }
 
 /// The model with the limits of a file, if one is named.

@@ -89,5 +89,5 @@ fn start(args: &ViewArgs) -> Result<Start> {
         obstacles: args.obstacle.clone(),
         disabled,
     };
-    Start::new((robot, &args.configuration.model), &q, tool, &args.meshes, bodies)
+    Start::new((robot, &args.configuration.model.name), &q, tool, &args.meshes, bodies)
 }

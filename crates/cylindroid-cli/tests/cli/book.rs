@@ -177,8 +177,9 @@ fn commands_run_and_print_what_the_pages_show() {
         let lines: Vec<&str> = text.lines().collect();
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("docs")).unwrap();
-        for model in ["docs/grasp.toml", "docs/cell.toml", "docs/tasks.toml", "docs/goals.toml"] {
-            fs::copy(Path::new(ROOT).join(model), folder.path().join(model)).unwrap();
+        for model in ["grasp", "cell", "tasks", "goals", "designs"] {
+            let model = format!("docs/{model}.toml");
+            fs::copy(Path::new(ROOT).join(&model), folder.path().join(&model)).unwrap();
         }
         let found = blocks(&lines);
         let mut written = Vec::new();

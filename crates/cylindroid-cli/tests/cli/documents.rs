@@ -14,6 +14,7 @@ pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
 const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
 const GOALS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/goals.toml");
+const DESIGNS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/designs.toml");
 const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");
 
 /// All commands, as the help lists them.
@@ -56,6 +57,7 @@ fn examples_run_as_they_stand() {
     fs::copy(CELL, docs.join("cell.toml")).unwrap();
     fs::copy(TASKS, docs.join("tasks.toml")).unwrap();
     fs::copy(GOALS, docs.join("goals.toml")).unwrap();
+    fs::copy(DESIGNS, docs.join("designs.toml")).unwrap();
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let home = ["0"; 21].join(",");
     fs::write(folder.path().join("configurations.csv"), format!("{home}\n{home}\n")).unwrap();
@@ -107,9 +109,10 @@ pub(crate) fn keys<'a>(value: &'a Value, found: &mut BTreeSet<&'a str>) {
 fn printing(command: &str) -> Vec<Vec<&'static str>> {
     const UP: [&str; 4] = ["--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"];
     const SLIDING: &str = "../cylindroid/tests/data/mechanisms/stewart-turned.toml";
+    const PARAMETERS: &str = "../cylindroid/tests/data/five_bar_parameters.toml";
     let with = |first: &[&'static str], more: &[&'static str]| [first, more].concat();
     let all = match command {
-        "info" => vec![vec!["panda"], vec!["two-arm"], vec!["stewart"]],
+        "info" => vec![vec!["panda"], vec!["two-arm"], vec!["stewart"], vec![PARAMETERS]],
         "fk" => vec![vec!["panda"], vec!["panda", "--all"]],
         "jacobian" => vec![
             vec!["ur5e", "--velocities", "shoulder_pan_joint=0.1"],

@@ -13,6 +13,7 @@ mod ik;
 mod inverses;
 mod measured;
 mod motion;
+mod parameters;
 mod pictures;
 mod screws;
 mod shape;

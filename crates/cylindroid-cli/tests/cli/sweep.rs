@@ -152,3 +152,38 @@ fn what_cannot_be_swept_is_refused() {
     let axis = refused(&["sweep", "panda", "--over", "panda_joint1=0:1"]);
     assert!(axis.contains("name=first:last:number"), "{axis}");
 }
+
+const DESIGNS: &str = "../../docs/designs.toml";
+
+#[test]
+fn designs_by_grid_and_samples() {
+    let sweep = ["sweep", DESIGNS, "--quantities", "pose,measures"];
+    let grid = ["--over", "crank=0.4:0.7:4", "--over", "point_x=-0.1:0.1:3"];
+    let report = json(&[&sweep[..], &grid].concat(), 0);
+    assert_eq!(
+        (&report["rows"], &report["configurations"]),
+        (&12.into(), &"home of 12 designs".into())
+    );
+    assert_eq!(column(&report, "crank")["largest"], 0.7);
+    assert_eq!(column(&report, "crank")["unit"], "m");
+    assert_eq!(column(&report, "design")["largest"], 11.0);
+    assert_eq!(column(&report, "design_valid")["smallest"], 1.0);
+    let samples = ["--vary", "rod=0.1:1", "--designs", "64", "--seed", "5"];
+    let report = json(&[&sweep[..], &samples].concat(), 0);
+    assert_eq!(report["rows"], 64);
+    let share = column(&report, "design_valid")["mean"].as_f64().unwrap();
+    assert!(share > 0.3 && share < 0.8, "{share}");
+    let other = json(&[&sweep[..], &samples[..4], &["--seed", "6"]].concat(), 0);
+    assert_ne!(column(&report, "rod")["mean"], column(&other, "rod")["mean"]);
+    // Values of --parameter are those of all designs.
+    let fixed = [&sweep[..], &grid, &["--parameter", "point_y=0.9"]].concat();
+    assert_eq!(column(&json(&fixed, 0), "y")["smallest"], 0.9);
+
+    let refused = |more: &[&str]| refused(&[&["sweep", DESIGNS], more].concat());
+    assert!(refused(&["--over", "cranck=0.4:0.7:4"]).contains("no coordinate or parameter"));
+    assert!(refused(&["--over", "crank=0.4:3:4"]).contains("its range is 0.05 to 2"));
+    assert!(refused(&["--vary", "crank=0.4:1"]).contains("--designs"));
+    assert!(refused(&["--vary", "crank=0.4", "--designs", "3"]).contains("name=smallest:largest"));
+    let both = ["--over", "rod=0.4:1:3", "--vary", "crank=0.4:1", "--designs", "3"];
+    assert!(refused(&both).contains("designs are a grid or samples"));
+}

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use cylindroid::Mechanism;
 use cylindroid::model::formats;
+use cylindroid::{Mechanism, ParametricModel};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::{Origin, PyMechanism};
-use crate::error::{Result, argument};
+use crate::error::{Failure, Result, argument, entry};
 use crate::options;
 use crate::table::{self, Table};
 
@@ -18,6 +19,8 @@ use crate::table::{self, Table};
 /// model : str or os.PathLike
 ///     The name of a catalogue model (see `catalogue`), or the path of a file: URDF, MJCF, SDF, or a
 ///     mechanism file in TOML.
+/// parameters : dict of str to float, optional
+///     Values of parameters of a mechanism file, in place of those of the file.
 ///
 /// Returns
 /// -------
@@ -26,7 +29,9 @@ use crate::table::{self, Table};
 /// Raises
 /// ------
 /// UnknownNameError
-///     For a name that is neither, with the nearest names.
+///     For a name that is neither and for an unknown parameter, with the nearest names.
+/// InvalidOptionError
+///     For a value that is out of the range of its parameter, and a model without parameters.
 /// MissingFileError, UnreadableFileError
 /// ModelFileError
 ///     For a file that cannot be understood, with line and column.
@@ -41,15 +46,17 @@ use crate::table::{self, Table};
 ///     ...
 /// cylindroid._errors.UnknownNameError: no catalogue model or file named 'pnda'; nearest: panda, ...
 #[pyfunction]
-#[pyo3(signature = (model))]
+#[pyo3(signature = (model, parameters = None))]
 pub(crate) fn load(
     py: Python<'_>,
     #[pyo3(from_py_with = argument)] model: PathBuf,
+    #[pyo3(from_py_with = argument)] parameters: Option<Bound<'_, PyDict>>,
 ) -> Result<PyMechanism> {
+    let parameters = parameter_values(parameters.as_ref())?;
     let name = model.to_string_lossy().into_owned();
     let inner = py.detach(|| match model.to_str() {
-        Some(name) => cylindroid::load(name),
-        None => cylindroid::load_file(&model),
+        None if parameters.is_empty() => cylindroid::load_file(&model),
+        _ => cylindroid::load_with_parameters(&name, &pairs(&parameters)),
     })?;
     // A path is the same from another folder only if it is absolute.
     let model = match std::path::absolute(&model) {
@@ -58,7 +65,7 @@ pub(crate) fn load(
         }
         _ => name,
     };
-    Ok(PyMechanism::new(inner, Origin::Model(model)))
+    Ok(PyMechanism::new(inner, Origin::Model { model, parameters }))
 }
 
 /// Reads a model from text.
@@ -70,6 +77,8 @@ pub(crate) fn load(
 ///     'urdf', 'mjcf', 'sdf' or 'toml' (a mechanism file).
 /// path : str or os.PathLike, optional
 ///     For messages, and to find meshes and files that the text includes.
+/// parameters : dict of str to float, optional
+///     Values of parameters of a mechanism file, as for `load`.
 ///
 /// Returns
 /// -------
@@ -82,13 +91,15 @@ pub(crate) fn load(
 /// ModelFileError
 ///     With line and column.
 #[pyfunction]
-#[pyo3(signature = (text, format = "urdf", path = None))]
+#[pyo3(signature = (text, format = "urdf", path = None, parameters = None))]
 pub(crate) fn parse(
     py: Python<'_>,
     #[pyo3(from_py_with = argument)] text: &str,
     #[pyo3(from_py_with = argument)] format: &str,
     #[pyo3(from_py_with = argument)] path: Option<PathBuf>,
+    #[pyo3(from_py_with = argument)] parameters: Option<Bound<'_, PyDict>>,
 ) -> Result<PyMechanism> {
+    let parameters = parameter_values(parameters.as_ref())?;
     let path = path.unwrap_or_else(|| PathBuf::from("<text>"));
     type Reader = fn(&str, &Path) -> cylindroid::Result<Mechanism>;
     let readers: [(&str, Reader); 4] = [
@@ -98,9 +109,28 @@ pub(crate) fn parse(
         ("toml", cylindroid::load_text),
     ];
     let read = options::named("format", format, &readers)?;
-    let inner = py.detach(|| read(text, &path))?;
-    let origin = Origin::Text { text: text.to_owned(), format: format.to_owned(), path };
-    Ok(PyMechanism::new(inner, origin))
+    if !parameters.is_empty() && format != "toml" {
+        let reason = "only mechanism files, format 'toml', have parameters";
+        return Err(Failure::option("parameters", format, reason));
+    }
+    let inner = py.detach(|| match &parameters[..] {
+        [] => read(text, &path),
+        given => Ok(ParametricModel::of_text(text, &path, &pairs(given))?.nominal().clone()),
+    })?;
+    let (text, format) = (text.to_owned(), format.to_owned());
+    Ok(PyMechanism::new(inner, Origin::Text { text, format, path, parameters }))
+}
+
+/// Values of parameters, in the order of the dictionary.
+pub(crate) fn parameter_values(given: Option<&Bound<'_, PyDict>>) -> Result<Vec<(String, f64)>> {
+    let values = given.into_iter().flat_map(|dict| dict.iter());
+    values
+        .map(|(name, value)| Ok((entry("parameters", &name)?, entry("parameters", &value)?)))
+        .collect()
+}
+
+pub(crate) fn pairs(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+    values.iter().map(|(name, value)| (name.as_str(), *value)).collect()
 }
 
 /// The catalogue of built-in models.

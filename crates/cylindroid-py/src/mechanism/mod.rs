@@ -5,6 +5,7 @@ mod joint;
 mod kinematics;
 mod limits;
 pub(crate) mod load;
+mod parameter;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -15,6 +16,7 @@ use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use cylindroid::model::{Dimension, JointLimits};
 use cylindroid::{EndEffector, Error, FrameId, Mechanism, Pose};
 use pyo3::prelude::*;
+use pyo3::types::IntoPyDict;
 use pyo3::{IntoPyObjectExt, intern};
 
 use crate::arrays::{self, Array, Numbers};
@@ -24,6 +26,7 @@ use crate::table::{self, Table};
 
 pub(crate) use joint::PyJoint;
 pub(crate) use load::PyLoadReport;
+pub(crate) use parameter::PyParameter;
 
 /// A robot or mechanism (immutable); created by `load` or `parse`.
 ///
@@ -63,6 +66,8 @@ pub(crate) use load::PyLoadReport;
 ///     True if loops or contacts constrain q.
 /// dimension : int
 ///     2 in the plane x-y, otherwise 3.
+/// parameters : list of Parameter
+///     Those of its mechanism file, with the values that it was built with.
 /// report : LoadReport
 ///     The format, the source and the ignored elements of the file.
 #[pyclass(frozen, name = "Mechanism", module = "cylindroid")]
@@ -79,9 +84,9 @@ pub(crate) struct PyMechanism {
 #[derive(Debug, Clone)]
 pub(crate) enum Origin {
     /// A name of the catalogue, or a path.
-    Model(String),
+    Model { model: String, parameters: Vec<(String, f64)> },
     /// Text, its format and its path.
-    Text { text: String, format: String, path: PathBuf },
+    Text { text: String, format: String, path: PathBuf, parameters: Vec<(String, f64)> },
     /// Another mechanism, with other actuators.
     Actuated { of: Box<PyMechanism>, names: Vec<String> },
     /// Another mechanism, with other limits.
@@ -304,12 +309,14 @@ impl PyMechanism {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let package = py.import(intern!(py, "cylindroid"))?;
         Ok(match &self.origin {
-            Origin::Model(model) => {
-                (package.getattr(intern!(py, "load"))?, (model,).into_bound_py_any(py)?)
-            }
-            Origin::Text { text, format, path } => (
+            Origin::Model { model, parameters } => (
+                package.getattr(intern!(py, "load"))?,
+                (model, parameters.clone().into_py_dict(py)?).into_bound_py_any(py)?,
+            ),
+            Origin::Text { text, format, path, parameters } => (
                 package.getattr(intern!(py, "parse"))?,
-                (text, format, path.as_os_str()).into_bound_py_any(py)?,
+                (text, format, path.as_os_str(), parameters.clone().into_py_dict(py)?)
+                    .into_bound_py_any(py)?,
             ),
             Origin::Actuated { of, names } => (
                 py.get_type::<Self>().getattr(intern!(py, "with_actuated"))?,

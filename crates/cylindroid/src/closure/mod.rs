@@ -54,7 +54,9 @@ pub use position::continuation::{
     ContinuationOptions, ContinuationResult, PathEnd, PathPoint, PathSingularity, track_path,
 };
 #[cfg(feature = "formats")]
-pub use position::load::{load, load_file, load_text};
+pub use position::load::{load, load_file, load_text, load_with_parameters};
+#[cfg(feature = "formats")]
+pub use position::parametric_model::ParametricModel;
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
 pub use singularity::operation_modes::{

@@ -1,9 +1,9 @@
 //! The catalogue: robots and mechanisms inside the library, each a mechanism file with its source.
 
-use std::path::Path;
+use std::path::PathBuf;
 
-use super::Mechanism;
 use super::formats::toml;
+use super::{Mechanism, ParameterValues};
 use crate::error::{Error, Result};
 
 /// A model of the catalogue.
@@ -60,7 +60,7 @@ pub const fn names() -> &'static [&'static str] {
 #[must_use]
 pub fn entries() -> Vec<Entry> {
     let read = |(name, text): (&&'static str, &&str)| {
-        let (mechanism, description) = read(name, text).ok()?;
+        let (mechanism, description) = read(name, text, &[]).ok()?;
         Some(Entry {
             name,
             description,
@@ -87,18 +87,34 @@ pub fn entries() -> Vec<Entry> {
 /// # Errors
 /// [`Error::UnknownName`] with the nearest names.
 pub fn load(name: &str) -> Result<Mechanism> {
-    match NAMES.iter().position(|n| *n == name) {
-        Some(i) => Ok(read(name, TEXTS[i])?.0),
+    load_with(name, &[])
+}
+
+/// [`load`] with these values of parameters.
+pub(super) fn load_with(name: &str, given: ParameterValues<'_>) -> Result<Mechanism> {
+    match text(name) {
+        Some(text) => Ok(read(name, text, given)?.0),
         None => Err(Error::unknown("catalogue model", name, NAMES)),
     }
 }
 
-fn read(name: &str, text: &str) -> Result<(Mechanism, String)> {
+/// The mechanism file of a model.
+pub(crate) fn text(name: &str) -> Option<&'static str> {
+    NAMES.iter().position(|n| *n == name).map(|i| TEXTS[i])
+}
+
+/// The path of a model in messages.
+pub(crate) fn path(name: &str) -> PathBuf {
+    PathBuf::from(format!("catalogue/{name}.toml"))
+}
+
+fn read(name: &str, text: &str, given: ParameterValues<'_>) -> Result<(Mechanism, String)> {
     toml::describe(
         text,
-        Path::new(&format!("catalogue/{name}.toml")),
+        &path(name),
         "catalogue",
-        (0, &|_, name, _| load(name)),
+        given,
+        (0, &|_, name, _, values| load_with(name, values)),
         &Ok,
     )
 }

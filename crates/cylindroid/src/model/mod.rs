@@ -34,6 +34,7 @@ pub(crate) mod mesh_file;
 mod mimic;
 mod natural_order;
 mod node;
+mod parameter;
 mod regular_file;
 mod report;
 mod tool_choice;
@@ -55,6 +56,9 @@ pub use link::{Collision, Geometry, Inertial, Link, Visual};
 pub use loop_joint::{LoopJoint, LoopJointSpec};
 pub use mechanism::{Coordinate, CoordinateKind, Frame, FrameId, Mechanism};
 pub(crate) use node::{Node, NodeKind};
+pub use parameter::Parameter;
+#[cfg(feature = "formats")]
+pub(crate) use parameter::ParameterValues;
 pub use regular_file::read_regular_file;
 pub use report::{Ignored, LoadReport};
 pub use tool_choice::ToolChoice;

@@ -1,12 +1,16 @@
-//! Load reports: the parts of a file that a loader did not use.
+//! Load reports: the parameters of a file, and its parts that a loader did not use.
 
-/// The result of loading a file: its format, its source, what was ignored.
+use super::parameter::Parameter;
+
+/// The result of loading a file: its format, its source, its parameters, what was ignored.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LoadReport {
     /// "URDF", "mechanism file", "catalogue", ...
     pub format: &'static str,
     /// The origin of the data, if the file gives one.
     pub source: String,
+    /// The parameters, in the order of the file.
+    pub parameters: Vec<Parameter>,
     /// What was ignored, in the order of the file.
     pub ignored: Vec<Ignored>,
 }

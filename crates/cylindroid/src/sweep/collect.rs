@@ -47,12 +47,7 @@ impl Sweep {
         for part in parts {
             let Some(part) = part else { return Ok(None) };
             for (own, more) in all.iter_mut().zip(part.values) {
-                match (own, more) {
-                    (Values::Numbers(own), Values::Numbers(more)) => own.extend(more),
-                    (Values::Counts(own), Values::Counts(more)) => own.extend(more),
-                    (Values::Texts(own), Values::Texts(more)) => own.extend(more),
-                    _ => {}
-                }
+                own.append(more);
             }
         }
         Ok(Some(Table { columns, values: all }))

@@ -4,11 +4,13 @@
 
 use std::ops::Range;
 
+use super::designs::{DesignSpace, Designs};
 use super::evaluate::Evaluator;
 use super::options::{PART_ROWS, SweepOptions};
 use super::recipe::Recipe;
 use super::source::Configurations;
 use super::table::{Column, Table};
+use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 
@@ -25,11 +27,15 @@ pub struct Sweep {
     pub(super) columns: Vec<Column>,
     pub(super) recipe: Recipe,
     pub(super) part_rows: u64,
+    pub(super) designs: Option<Designs>,
 }
 
 impl Sweep {
     /// Rows of a part by default.
     pub const PART_ROWS: u64 = PART_ROWS;
+
+    /// Rows of a part of [`Sweep::of_designs`] by default: fewer, for a design takes longer.
+    pub const DESIGN_PART_ROWS: u64 = 1 << 10;
 
     /// Checks all options.
     ///
@@ -50,10 +56,7 @@ impl Sweep {
             }
         }
         let configurations = Configurations::new(mechanism, &options.source)?;
-        if configurations.rows.div_ceil(options.part_rows) > MOST_PARTS {
-            let reason = "the sweep has more than 10 000 000 parts; give parts more rows";
-            return refuse("part_rows", options.part_rows.to_string(), reason);
-        }
+        check_parts(configurations.rows, options.part_rows)?;
         let evaluator = Evaluator::new(mechanism, &options)?;
         let mut columns = vec![Column::count("index", "place in the sweep, from 0")];
         let coordinates = mechanism.coordinates().iter();
@@ -61,21 +64,53 @@ impl Sweep {
         for quantity in &options.quantities {
             columns.extend(quantity.columns(mechanism, evaluator.values()));
         }
-        for (i, column) in columns.iter().enumerate() {
-            if columns[..i].iter().any(|c| c.name == column.name) {
-                let reason = "a coordinate has this name too; rename it, or leave out the quantity";
-                return refuse("quantities", column.name.clone(), reason);
-            }
-        }
+        check_names(&columns)?;
         let recipe = Recipe::of(mechanism, &options, configurations.rows, &evaluator);
         let part_rows = options.part_rows;
-        Ok(Self { configurations, evaluator, columns, recipe, part_rows })
+        Ok(Self { configurations, evaluator, columns, recipe, part_rows, designs: None })
+    }
+
+    /// The sweep of each design: values of parameters of a mechanism file. Its columns are `index`,
+    /// `design`, `design_valid` and the parameters, then those of [`Sweep::new`].
+    ///
+    /// # Errors
+    /// Those of [`Sweep::new`] for the nominal design; unknown or repeated parameters, ranges beyond
+    /// those of the file, a parameter with the name of a coordinate.
+    pub fn of_designs(
+        model: &ParametricModel,
+        space: DesignSpace,
+        options: SweepOptions,
+    ) -> Result<Self> {
+        let mut sweep = Self::new(model.nominal(), options.clone())?;
+        let (length, part_rows) = (options.length, options.part_rows);
+        let each = sweep.rows();
+        let designs = Designs::new((model, space), options, sweep.columns, each)?;
+        sweep.columns = designs.columns();
+        check_names(&sweep.columns)?;
+        let Some(rows) = each.checked_mul(designs.count) else {
+            return Err(Error::InvalidOption {
+                option: "rows",
+                value: format!("{} designs of {each} configurations", designs.count),
+                reason: "they are more than 2^64".to_owned(),
+            });
+        };
+        check_parts(rows, part_rows)?;
+        sweep.recipe = sweep.recipe.with_designs(&designs, rows, length);
+        sweep.designs = Some(designs);
+        Ok(sweep)
     }
 
     /// Number of configurations.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        self.configurations.rows
+        let designs = self.designs.as_ref().map_or(1, |designs| designs.count);
+        self.configurations.rows * designs
+    }
+
+    /// Number of designs, of [`Sweep::of_designs`].
+    #[must_use]
+    pub fn designs(&self) -> Option<u64> {
+        self.designs.as_ref().map(|designs| designs.count)
     }
 
     /// The columns: `index`, the coordinates, then the quantities.
@@ -102,7 +137,38 @@ impl Sweep {
                 reason: format!("the sweep has {} rows", self.rows()),
             });
         }
-        let values = self.evaluator.run(&self.configurations, &self.columns, rows)?;
+        let values = match &self.designs {
+            None => self.evaluator.run(&self.configurations, &self.columns, rows)?,
+            Some(designs) => designs.run(&self.columns, rows)?,
+        };
         Ok(Table { columns: self.columns.clone(), values })
     }
+}
+
+/// Returns an error for too many parts.
+fn check_parts(rows: u64, part_rows: u64) -> Result<()> {
+    if rows.div_ceil(part_rows) <= MOST_PARTS {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: "part_rows",
+        value: part_rows.to_string(),
+        reason: "the sweep has more than 10 000 000 parts; give parts more rows".to_owned(),
+    })
+}
+
+/// Returns an error for a column whose name another one has.
+fn check_names(columns: &[Column]) -> Result<()> {
+    for (i, column) in columns.iter().enumerate() {
+        if columns[..i].iter().any(|c| c.name == column.name) {
+            return Err(Error::InvalidOption {
+                option: "quantities",
+                value: column.name.clone(),
+                reason: "a coordinate or parameter has this name too; rename it, or leave out the \
+                         quantity"
+                    .to_owned(),
+            });
+        }
+    }
+    Ok(())
 }

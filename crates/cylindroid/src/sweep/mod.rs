@@ -3,7 +3,7 @@
 //!
 //! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
-//! `parquet_file` (a part), `job` (a whole sweep), `recipe` and `folder` (on disk, stopped and
+//! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder` (on disk, stopped and
 //! resumed).
 //!
 //! ```
@@ -22,6 +22,7 @@
 //! ```
 
 mod collect;
+mod designs;
 mod direction_numbers;
 mod evaluate;
 mod folder;
@@ -39,6 +40,7 @@ mod source;
 mod statistics;
 mod table;
 
+pub use designs::{AxisKinds, DesignSpace, ParameterRange};
 pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
 pub use options::{SweepOptions, VelocityMetric};

@@ -10,9 +10,10 @@ use std::fmt::{self, Display, Write};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use super::designs::{DesignSpace, Designs, ParameterRange};
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
-use super::source::Source;
+use super::source::{Axis, Source};
 use crate::model::Mechanism;
 
 /// A JSON object.
@@ -52,6 +53,36 @@ impl Recipe {
         }))
     }
 
+    /// The recipe with designs; a length that was not chosen is that of each design.
+    pub(super) fn with_designs(
+        mut self,
+        designs: &Designs,
+        rows: u64,
+        length: Option<f64>,
+    ) -> Self {
+        let model = &designs.model;
+        let parameters = model.parameters().iter().map(|p| (p.name.clone(), p.value.into()));
+        let mut hasher = Sha256::new();
+        hasher.update(model.text());
+        let space = match &designs.space {
+            DesignSpace::Grid(axes) => json!({"over": axes.iter().map(axis).collect::<Vec<_>>()}),
+            DesignSpace::Samples { ranges, count, seed } => {
+                let range =
+                    |r: &ParameterRange| json!({"name": r.name, "from": r.from, "to": r.to});
+                let ranges = ranges.iter().map(range).collect::<Vec<_>>();
+                json!({"vary": ranges, "count": count, "seed": seed})
+            }
+        };
+        self.0["designs"] = json!({
+            "file_checksum": hexadecimal(&hasher.finalize()),
+            "parameters": parameters.collect::<serde_json::Map<String, Value>>(),
+            "space": space,
+        });
+        self.0["rows"] = rows.into();
+        self.0["length"] = length.into();
+        self
+    }
+
     /// The first entry in which a recipe differs from this one, with both values.
     pub(super) fn difference(&self, other: &Value) -> Option<String> {
         difference("", &self.0, other)
@@ -76,11 +107,15 @@ fn difference(path: &str, own: &Value, other: &Value) -> Option<String> {
     Some(format!("{path} is {other} there and {own} now"))
 }
 
+fn axis(axis: &Axis) -> Value {
+    json!({"name": axis.name, "from": axis.from, "to": axis.to, "count": axis.count})
+}
+
 fn source(source: &Source) -> Value {
     match source {
         Source::Samples { count, seed } => json!({"samples": count, "seed": seed}),
+        Source::Home => json!("home"),
         Source::Grid { axes, rest } => {
-            let axis = |a: &super::Axis| json!({"name": a.name, "from": a.from, "to": a.to, "count": a.count});
             json!({"over": axes.iter().map(axis).collect::<Vec<_>>(), "q": rest})
         }
         Source::Configurations(q) => {

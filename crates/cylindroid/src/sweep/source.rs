@@ -37,6 +37,8 @@ pub enum Source {
         /// The other coordinates, n numbers (rad or m); home if empty.
         rest: Vec<f64>,
     },
+    /// Home alone, for designs: of a closed chain it is closed in each of them.
+    Home,
     /// These, one after the other, n numbers each (rad or m).
     Configurations(Vec<f64>),
 }
@@ -111,6 +113,7 @@ impl Configurations {
                 free("over")?;
                 grid(mechanism, axes, rest)?
             }
+            Source::Home => (1, Kind::Given(mechanism.home().to_vec())),
             Source::Configurations(q) => {
                 let rows = mechanism.count_rows("configurations", q)?;
                 mechanism.check_rows("configurations", q)?;
@@ -203,6 +206,19 @@ fn rotation_vector([a, b, c]: [f64; 3]) -> [f64; 3] {
     quaternion.rotation().map_or([0.0; 3], |rotation| rotation.log().to_array())
 }
 
+/// Number of points of a grid.
+pub(super) fn points(axes: &[Axis]) -> Result<u64> {
+    axes.iter().try_fold(1_u64, |rows, axis| {
+        let reason = match rows.checked_mul(axis.count) {
+            Some(0) => "an axis has one value at least",
+            Some(rows) if rows <= 1 << 48 => return Ok(rows),
+            _ => "the grid has more than 2^48 points",
+        };
+        let (value, reason) = (axis.name.clone(), reason.to_owned());
+        Err(Error::InvalidOption { option: "over", value, reason })
+    })
+}
+
 fn grid(mechanism: &Mechanism, axes: &[Axis], rest: &[f64]) -> Result<(u64, Kind)> {
     let refuse = |value: String, reason: &str| {
         Err(Error::InvalidOption { option: "over", value, reason: reason.to_owned() })
@@ -210,9 +226,10 @@ fn grid(mechanism: &Mechanism, axes: &[Axis], rest: &[f64]) -> Result<(u64, Kind
     if axes.is_empty() {
         return refuse(String::new(), "a grid has one axis at least");
     }
+    let rows = points(axes)?;
     let rest = if rest.is_empty() { mechanism.home() } else { rest };
     mechanism.check_q("q", rest)?;
-    let (mut rows, mut places) = (1_u64, Vec::with_capacity(axes.len()));
+    let mut places = Vec::with_capacity(axes.len());
     for axis in axes {
         let names = mechanism.coordinates().iter().map(|c| &c.name);
         let place = names.clone().position(|name| *name == axis.name);
@@ -221,11 +238,6 @@ fn grid(mechanism: &Mechanism, axes: &[Axis], rest: &[f64]) -> Result<(u64, Kind
             return refuse(axis.name.clone(), "a coordinate can be one axis only");
         }
         Error::check_within(&axis.name, &[axis.from, axis.to], MAX_MAGNITUDE)?;
-        rows = match rows.checked_mul(axis.count) {
-            Some(0) => return refuse(axis.name.clone(), "an axis has one value at least"),
-            Some(rows) if rows <= 1 << 48 => rows,
-            _ => return refuse(axis.name.clone(), "the grid has more than 2^48 points"),
-        };
         places.push(place);
     }
     Ok((rows, Kind::Grid { axes: axes.to_vec(), places, rest: rest.to_vec() }))

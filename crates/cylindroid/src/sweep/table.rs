@@ -1,12 +1,14 @@
 //! Rows of a sweep in columns.
 
+use std::borrow::Cow;
+
 /// A column: its name, unit and meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
     /// Its name.
     pub name: String,
     /// Its SI unit; "1" for numbers without one, empty for others.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// One phrase.
     pub description: &'static str,
     /// The type of its entries.
@@ -22,15 +24,30 @@ pub(super) enum ColumnKind {
 
 impl Column {
     pub(super) fn number(name: &str, unit: &'static str, description: &'static str) -> Self {
-        Self { name: name.to_owned(), unit, description, kind: ColumnKind::Number }
+        Self { name: name.to_owned(), unit: unit.into(), description, kind: ColumnKind::Number }
     }
 
     pub(super) fn count(name: &str, description: &'static str) -> Self {
-        Self { name: name.to_owned(), unit: "", description, kind: ColumnKind::Count }
+        Self { name: name.to_owned(), unit: "".into(), description, kind: ColumnKind::Count }
     }
 
     pub(super) fn text(name: &str, description: &'static str) -> Self {
-        Self { name: name.to_owned(), unit: "", description, kind: ColumnKind::Text }
+        Self { name: name.to_owned(), unit: "".into(), description, kind: ColumnKind::Text }
+    }
+
+    /// A parameter of the file, whose unit the file names.
+    pub(super) fn parameter(name: &str, unit: &str) -> Self {
+        let unit = unit.to_owned().into();
+        Self { name: name.to_owned(), unit, description: "parameter", kind: ColumnKind::Number }
+    }
+
+    /// Entries of rows without results.
+    pub(super) fn missing(&self, rows: usize) -> Values {
+        match self.kind {
+            ColumnKind::Number => Values::Numbers(vec![f64::NAN; rows]),
+            ColumnKind::Count => Values::Counts(vec![0; rows]),
+            ColumnKind::Text => Values::Texts(vec![""; rows]),
+        }
     }
 
     pub(super) fn empty(&self) -> Values {
@@ -52,6 +69,18 @@ pub enum Values {
     Counts(Vec<u64>),
     /// Names.
     Texts(Vec<&'static str>),
+}
+
+impl Values {
+    /// Appends entries of the same type.
+    pub(super) fn append(&mut self, more: Self) {
+        match (self, more) {
+            (Self::Numbers(own), Self::Numbers(more)) => own.extend(more),
+            (Self::Counts(own), Self::Counts(more)) => own.extend(more),
+            (Self::Texts(own), Self::Texts(more)) => own.extend(more),
+            _ => {}
+        }
+    }
 }
 
 /// Rows of a sweep in columns.

@@ -26,6 +26,7 @@ mod mujoco;
 mod mutated_files;
 mod mutations;
 mod order;
+mod parameters;
 mod real_chains;
 mod sdf;
 mod tool;

@@ -7,6 +7,7 @@
     clippy::float_cmp_const
 )]
 
+mod designs;
 mod folder;
 mod parts;
 mod pinocchio;

@@ -16,7 +16,7 @@ use serde::Serialize;
 use self::job::{Job, open_by, q_line};
 use super::ClosureErrorJson;
 use crate::args::AssembleArgs;
-use crate::commands::shared::{Style, answer, configuration};
+use crate::commands::shared::{Style, answer, configuration, load};
 use crate::output::{self, Align};
 use crate::values::Joints;
 
@@ -40,7 +40,7 @@ pub(crate) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let mechanism = cylindroid::load(&args.configuration.model)?;
+    let mechanism = load(&args.configuration.model, &[])?;
     let job = Job {
         names: output::joint_names(&mechanism),
         guess: configuration(&mechanism, &args.configuration)?,

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::args::GraspArgs;
 use crate::commands::closed::immobilisation::{CurvatureJson, ImmobilisationJson};
-use crate::commands::shared::{Style, answer, configuration};
+use crate::commands::shared::{Style, answer, configuration, load};
 use crate::output::{self, Align, number};
 use crate::values::components;
 
@@ -60,7 +60,7 @@ struct ContactJson<'a> {
 }
 
 pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let mechanism = cylindroid::load(&args.configuration.model)?;
+    let mechanism = load(&args.configuration.model, &[])?;
     let q = configuration(&mechanism, &args.configuration)?;
     let object = match &args.frame {
         Some(name) => mechanism.frame(name)?,

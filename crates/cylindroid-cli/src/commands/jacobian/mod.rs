@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use self::inverse::InverseJson;
 use crate::args::{Angles, JacobianArgs, ReferenceName};
-use crate::commands::shared::{Style, answer, configuration, end_effector};
+use crate::commands::shared::{Style, answer, configuration, end_effector, load};
 use crate::output;
 
 #[derive(Debug, Serialize)]
@@ -61,7 +61,7 @@ pub(crate) fn run(
     style: Style,
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.configuration.model)?;
+    let robot = load(&args.configuration.model, &[])?;
     let degrees = args.configuration.degrees;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let end_effector = end_effector(&robot, &args.frame)?;

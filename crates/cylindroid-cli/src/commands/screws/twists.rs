@@ -9,7 +9,7 @@ use cylindroid::model::Mechanism;
 use cylindroid::{EndEffector, Error, Matrix, Result, State, Twist, Vec3};
 
 use crate::args::ScrewsArgs;
-use crate::commands::shared::{configuration, end_effector};
+use crate::commands::shared::{configuration, end_effector, load};
 use crate::number_file::{self, Row};
 
 /// Twists with names, in one frame.
@@ -28,7 +28,7 @@ pub(super) struct Twists {
 
 impl Twists {
     pub(super) fn read(args: &ScrewsArgs) -> Result<Self> {
-        let path = Path::new(&args.configuration.model);
+        let path = Path::new(&args.configuration.model.name);
         match path.extension().and_then(OsStr::to_str) {
             Some("csv" | "json") => {
                 let rows = number_file::rows(path)?;
@@ -40,16 +40,23 @@ impl Twists {
     }
 
     fn of_file(args: &ScrewsArgs, rows: Vec<[f64; 6]>) -> Result<Self> {
+        if !args.configuration.model.parameter.is_empty() {
+            return Err(Error::InvalidOption {
+                option: "--parameter",
+                value: args.configuration.model.name.clone(),
+                reason: "a file of twists has no parameters; omit the option".to_owned(),
+            });
+        }
         if args.frame.frame.is_some() || args.frame.tool.is_some() {
             return Err(Error::InvalidOption {
                 option: "--frame or --tool",
-                value: args.configuration.model.clone(),
+                value: args.configuration.model.name.clone(),
                 reason: "a file of twists has no frames; omit the option".to_owned(),
             });
         }
         Ok(Self {
             robot: None,
-            file: args.configuration.model.clone(),
+            file: args.configuration.model.name.clone(),
             names: (1..=rows.len()).map(|i| i.to_string()).collect(),
             twists: rows.into_iter().map(|row| Self::in_order(args, row)).collect(),
             closure_error: None,
@@ -68,18 +75,18 @@ impl Twists {
         if args.angular_first {
             return Err(Error::InvalidOption {
                 option: "--angular-first",
-                value: args.configuration.model.clone(),
+                value: args.configuration.model.name.clone(),
                 reason: "it applies only to files of twists (.csv, .json)".to_owned(),
             });
         }
-        let robot = cylindroid::load(&args.configuration.model)?;
+        let robot = load(&args.configuration.model, &[])?;
         let q = configuration(&robot, &args.configuration)?;
         let end_effector = end_effector(&robot, &args.frame)?;
         let found = Self::of(&robot.state(&q)?, end_effector)?;
         if found.is_of_loops() && args.point.is_some() {
             return Err(Error::InvalidOption {
                 option: "--point",
-                value: args.configuration.model.clone(),
+                value: args.configuration.model.name.clone(),
                 reason: "the loops couple its joint velocities; move solves for them".to_owned(),
             });
         }

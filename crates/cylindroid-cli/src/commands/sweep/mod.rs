@@ -10,23 +10,27 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use cylindroid::sweep::{Progress, Quantity, Source, Sweep, SweepOptions, WriteOptions};
+use cylindroid::sweep::{
+    Axis, AxisKinds, DesignSpace, ParameterRange, Progress, Quantity, Source, Sweep, SweepOptions,
+    WriteOptions,
+};
 use cylindroid::{Error, Mechanism};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::interrupt::Interrupt;
 use self::report::{Head, Outcome};
 use crate::args::SweepArgs;
-use crate::commands::shared::{Style, end_effector};
+use crate::commands::shared::{Style, end_effector, load, parametric};
 use crate::number_file;
 use crate::output;
+use crate::values::Joints;
 
 /// Exit code after Ctrl-C, as of a shell: 128 and the number of the signal.
 const INTERRUPTED: u8 = 130;
 
 pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.model)?;
-    let source = source(&robot, args)?;
+    let robot = load(&args.model, &[])?;
+    let (source, space) = (source(&robot, args)?, designs(&robot, args)?);
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let of_chain = robot.is_closed().then(|| robot.reference().into());
     let frame = if named {
@@ -36,6 +40,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     };
     let quantities =
         args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?;
+    let part_rows = if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS };
     let options = SweepOptions {
         source: source.clone(),
         quantities,
@@ -43,9 +48,12 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         task: args.task.clone(),
         metric: args.metric.metric(),
         length: args.length,
-        part_rows: args.part_rows.map_or(Sweep::PART_ROWS, |count| count.0),
+        part_rows: args.part_rows.map_or(part_rows, |count| count.0),
     };
-    let sweep = Sweep::new(&robot, options)?;
+    let sweep = match space {
+        None => Sweep::new(&robot, options)?,
+        Some(space) => Sweep::of_designs(&parametric(&args.model)?, space, options)?,
+    };
     let head = Head::of(&robot, &sweep, &source, args, frame);
     let interrupt = Interrupt::new();
     let started = Instant::now();
@@ -90,16 +98,55 @@ fn is_csv(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
+/// The configurations, of each design if there are designs.
 fn source(robot: &Mechanism, args: &SweepArgs) -> cylindroid::Result<Source> {
+    let kinds = AxisKinds::of(axes(args), robot)?;
+    let chosen = match (&args.samples, &args.configurations) {
+        (None, None) => None,
+        (Some(_), _) => Some("samples"),
+        _ => Some("configurations"),
+    };
+    if let (Some(axis), Some(chosen)) = (kinds.coordinates.first(), chosen) {
+        return Err(Error::InvalidOption {
+            option: "--over",
+            value: axis.name.clone(),
+            reason: format!("a coordinate is an axis or one of --{chosen}, not both"),
+        });
+    }
     if let Some(path) = &args.configurations {
         let names = output::joint_names(robot);
         return Ok(Source::Configurations(number_file::configurations(path, &names)?));
     }
-    match args.samples {
-        Some(count) => Ok(Source::Samples { count: count.0, seed: args.seed }),
-        None => Ok(Source::Grid {
-            axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
-            rest: args.q.configuration(robot, false)?,
+    if let Some(count) = args.samples {
+        return Ok(Source::Samples { count: count.0, seed: args.seed });
+    }
+    let rest = args.q.configuration(robot, false)?;
+    Ok(match kinds.coordinates {
+        axes if !axes.is_empty() => Source::Grid { axes, rest },
+        _ if args.q == Joints::Home => Source::Home,
+        _ => Source::Configurations(rest),
+    })
+}
+
+fn axes(args: &SweepArgs) -> Vec<Axis> {
+    args.over.iter().map(|axis| axis.0.clone()).collect()
+}
+
+/// The designs, if parameters vary.
+fn designs(robot: &Mechanism, args: &SweepArgs) -> cylindroid::Result<Option<DesignSpace>> {
+    let parameters = AxisKinds::of(axes(args), robot)?.parameters;
+    let ranges: Vec<ParameterRange> = args.vary.iter().map(|range| range.0.clone()).collect();
+    match (parameters.first(), args.designs) {
+        (None, None) => Ok(None),
+        (Some(_), None) => Ok(Some(DesignSpace::Grid(parameters))),
+        (None, Some(count)) => {
+            Ok(Some(DesignSpace::Samples { ranges, count: count.0, seed: args.seed }))
+        }
+        (Some(axis), Some(_)) => Err(Error::InvalidOption {
+            option: "--over",
+            value: axis.name.clone(),
+            reason: "designs are a grid or samples: give parameters in --over or in --vary"
+                .to_owned(),
         }),
     }
 }

@@ -31,19 +31,26 @@ impl<'a> Head<'a> {
         args: &'a SweepArgs,
         frame: EndEffector,
     ) -> Self {
-        let rows = sweep.rows();
+        let all = sweep.rows();
+        let rows = all / sweep.designs().unwrap_or(1).max(1);
         let configurations = match source {
             Source::Samples { seed, .. } => format!("{rows} samples, seed {seed}"),
             Source::Grid { axes, .. } => {
                 let counts: Vec<String> = axes.iter().map(|a| a.count.to_string()).collect();
                 format!("grid of {}", counts.join(" x "))
             }
+            Source::Home => "home".to_owned(),
+            _ if rows == 1 => "that of --q".to_owned(),
             _ => format!("{rows} of a file"),
+        };
+        let configurations = match sweep.designs() {
+            None => configurations,
+            Some(designs) => format!("{configurations} of {designs} designs"),
         };
         Self {
             model: robot.name(),
             frame: &robot.frame_of(frame.frame).name,
-            rows,
+            rows: all,
             configurations,
             quantities: &args.quantities,
             task: &args.task,
@@ -173,7 +180,7 @@ impl Outcome<'_> {
         let rows = columns.iter().filter_map(|(column, statistics)| match statistics {
             Statistics::Numbers { smallest, mean, largest, not_finite } => Some(vec![
                 column.name.clone(),
-                column.unit.to_owned(),
+                column.unit.to_string(),
                 number(*smallest),
                 number(*mean),
                 number(*largest),
@@ -196,7 +203,7 @@ impl Outcome<'_> {
 fn column_json((column, statistics): &(Column, Statistics)) -> ColumnJson<'_> {
     let mut json = ColumnJson {
         name: &column.name,
-        unit: column.unit,
+        unit: &column.unit,
         description: column.description,
         smallest: None,
         mean: None,

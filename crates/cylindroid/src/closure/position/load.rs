@@ -28,7 +28,16 @@ use crate::model::{Dimension, JointKind, LoopJoint, Mechanism, formats};
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 pub fn load(name_or_path: &str) -> Result<Mechanism> {
-    formats::load::load(name_or_path, &|mechanism| close_home(&mechanism))
+    load_with_parameters(name_or_path, &[])
+}
+
+/// Loads a model with these values of parameters, in place of those of its mechanism file.
+///
+/// # Errors
+/// As [`load`]; a model without parameters, an unknown parameter with the nearest names, a value out
+/// of its range. [`ParametricModel`](crate::ParametricModel) reads the file once for many values.
+pub fn load_with_parameters(name_or_path: &str, parameters: &[(&str, f64)]) -> Result<Mechanism> {
+    formats::load::load(name_or_path, parameters, &|mechanism| close_home(&mechanism))
 }
 
 /// Loads a model file, by its extension and content.
@@ -36,7 +45,7 @@ pub fn load(name_or_path: &str) -> Result<Mechanism> {
 /// # Errors
 /// As [`load`].
 pub fn load_file(path: &Path) -> Result<Mechanism> {
-    formats::load::load_file(path, &|mechanism| close_home(&mechanism))
+    formats::load::load_file(path, &[], &|mechanism| close_home(&mechanism))
 }
 
 /// Reads the text of a mechanism file. The path is used in errors, and to find the files of
@@ -60,7 +69,12 @@ pub fn load_file(path: &Path) -> Result<Mechanism> {
 /// [`Error::File`] with line and column for broken TOML, unknown keys, values of a wrong type, all
 /// that the builder refuses, and loops that cannot be closed; the errors of included files.
 pub fn load_text(text: &str, path: &Path) -> Result<Mechanism> {
-    formats::toml::read(text, path, &|mechanism| close_home(&mechanism))
+    read_text(text, path, &[])
+}
+
+/// [`load_text`] with these values of parameters.
+pub(super) fn read_text(text: &str, path: &Path, parameters: &[(&str, f64)]) -> Result<Mechanism> {
+    formats::toml::read(text, path, parameters, &|mechanism| close_home(&mechanism))
 }
 
 /// The same mechanism with an assembled home, where closures by frames may be open.

@@ -15,4 +15,6 @@ pub(crate) mod initial_guesses;
 #[cfg(feature = "formats")]
 pub(crate) mod load;
 pub(crate) mod loop_closure;
+#[cfg(feature = "formats")]
+pub(crate) mod parametric_model;
 pub(crate) mod predictor_corrector;

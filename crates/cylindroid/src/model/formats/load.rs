@@ -2,13 +2,14 @@
 //!
 //! Checked  tests/formats/load.rs
 
-use std::path::Path;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 
 use super::span::Source;
 use super::text_file::{self, TextFile};
 use super::{mjcf, sdf, toml, urdf, xacro, xml_limits};
 use crate::error::{Error, Result, shown};
-use crate::model::{CloseHome, Mechanism, catalogue};
+use crate::model::{CloseHome, Mechanism, ParameterValues, catalogue};
 
 /// Extensions that mark a word as a missing file, not as a misspelt name.
 const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
@@ -17,26 +18,39 @@ const EXTENSIONS: [&str; 6] = ["urdf", "xml", "xacro", "sdf", "toml", "mjcf"];
 ///
 /// # Errors
 /// A name that is neither, a file that cannot be read or parsed, a loop that cannot be closed.
-pub(crate) fn load(name_or_path: &str, close: CloseHome<'_>) -> Result<Mechanism> {
-    load_from(Path::new(""), name_or_path, 0, close)
+pub(crate) fn load(
+    name_or_path: &str,
+    given: ParameterValues<'_>,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
+    load_from(Path::new(""), name_or_path, given, 0, close)
 }
 
 /// [`load`] for a file in `folder`, at a nesting depth of `depth` inclusions.
 pub(super) fn load_from(
     folder: &Path,
     name_or_path: &str,
+    given: ParameterValues<'_>,
     depth: usize,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
+    match found(folder, name_or_path)? {
+        None => catalogue::load_with(name_or_path, given),
+        Some(path) => read_file(&path, given, depth, close),
+    }
+}
+
+/// The path of a file; `None` for a name of the catalogue.
+fn found(folder: &Path, name_or_path: &str) -> Result<Option<PathBuf>> {
     if catalogue::names().contains(&name_or_path) {
-        return catalogue::load(name_or_path);
+        return Ok(None);
     }
     let path = Path::new(name_or_path);
     let looks_like_a_path = name_or_path.contains(['/', '\\'])
         || extension(path).is_some_and(|e| EXTENSIONS.contains(&e.as_str()));
     let path = folder.join(path);
     if looks_like_a_path || path.exists() {
-        return read_file(&path, depth, close);
+        return Ok(Some(path));
     }
     let names = catalogue::names().iter().copied();
     Err(Error::unknown("catalogue model or file", name_or_path, names))
@@ -46,23 +60,61 @@ pub(super) fn load_from(
 ///
 /// # Errors
 /// As [`load`].
-pub(crate) fn load_file(path: &Path, close: CloseHome<'_>) -> Result<Mechanism> {
-    read_file(path, 0, close)
+pub(crate) fn load_file(
+    path: &Path,
+    given: ParameterValues<'_>,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
+    read_file(path, given, 0, close)
 }
 
-fn read_file(path: &Path, depth: usize, close: CloseHome<'_>) -> Result<Mechanism> {
-    let TextFile { text, replaced } = text_file::read(path)?;
+/// The text of a mechanism file, by name or path, and its path.
+pub(crate) fn mechanism_text(name_or_path: &str) -> Result<(Cow<'static, str>, PathBuf)> {
+    let path = found(Path::new(""), name_or_path)?;
+    let Some(path) = path else {
+        let text = catalogue::text(name_or_path).unwrap_or_default();
+        return Ok((text.into(), catalogue::path(name_or_path)));
+    };
+    if !is_mechanism_file(&path) {
+        return Err(Error::InvalidOption {
+            option: "model",
+            value: shown(&path),
+            reason: "only mechanism files (.toml) have parameters".to_owned(),
+        });
+    }
+    let text = utf8_of(text_file::read(&path)?, &path)?;
+    Ok((text.into(), path))
+}
+
+fn is_mechanism_file(path: &Path) -> bool {
+    extension(path).as_deref() == Some("toml")
+}
+
+/// The text of a mechanism file.
+fn utf8_of(file: TextFile, path: &Path) -> Result<String> {
+    let TextFile { text, replaced } = file;
+    let Some(at) = replaced else { return Ok(text) };
+    let source = Source { format: "mechanism file", path, text: &text };
+    let message = "this is not UTF-8, which a mechanism file must be";
+    Err(source.error(at..at + 1, message, "save it as UTF-8"))
+}
+
+fn read_file(
+    path: &Path,
+    given: ParameterValues<'_>,
+    depth: usize,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
+    let file = text_file::read(path)?;
+    if is_mechanism_file(path) {
+        return toml::read_at(&utf8_of(file, path)?, path, given, depth, close);
+    }
+    if let Some((name, _)) = given.first() {
+        return Err(toml::none(name, &shown(path)));
+    }
+    let TextFile { text, replaced } = file;
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     let mechanism = match extension(path).as_deref() {
-        Some("toml") => {
-            if let Some(at) = replaced {
-                let source = Source { format: "mechanism file", path, text: &text };
-                let message = "this is not UTF-8, which a mechanism file must be";
-                return Err(source.error(at..at + 1, message, "save it as UTF-8"));
-            }
-            let loader = |from: &Path, name: &str, depth| load_from(from, name, depth, close);
-            toml::describe(&text, path, "mechanism file", (depth, &loader), close)?.0
-        }
         Some("mjcf") => mjcf::parse(&text, path)?,
         Some("xacro") => match xacro::expand(path)? {
             Some(urdf) => urdf::parse_expanded(&urdf, path)?,

@@ -3,7 +3,8 @@
 //!
 //! Keys     name, description, source, dimension (2 or 3), reference, reference_point, home, tool;
 //!          `[[joint]]`, or `[dh]` with convention, rows, base, flange; `[[link]]`, `[[collision]]`, `[[contact]]`,
-//!          `[[robot]]`, `[[frame]]`, `[[closure]]`, `[[elasticity]]`
+//!          `[[robot]]`, `[[frame]]`, `[[closure]]`, `[[elasticity]]`; `[parameters]`, and expressions of
+//!          them in place of numbers
 //! Units    m, rad, N, N m; pitch in m/rad
 //! Valid    any connected graph. Home is q = 0, for included robots their start configuration; a
 //!          joint between links that are already connected is a loop joint
@@ -16,9 +17,11 @@ mod closure;
 mod collision;
 mod contact;
 mod elasticity;
+mod expression;
 mod limit;
 mod limits_file;
 mod names;
+mod parameters;
 mod parse;
 mod robot;
 mod tree;
@@ -26,8 +29,10 @@ mod value;
 mod world;
 
 pub use self::limits_file::{with_limits_of_file, with_limits_of_text};
+pub(in crate::model) use self::parameters::none;
 pub use self::parse::parse;
 pub(crate) use self::parse::read;
+pub(super) use self::parse::read_at;
 pub(in crate::model) use self::robot::Loader;
 
 use std::path::Path;
@@ -35,14 +40,15 @@ use std::path::Path;
 use ::toml::de::DeTable;
 
 use self::names::{GROUND, REFERENCE};
+use self::parameters::Parameters;
 use self::value::Table;
 use self::world::World;
 use super::span::Source;
 use crate::error::Result;
-use crate::model::{CloseHome, Dimension, Mechanism};
+use crate::model::{CloseHome, Dimension, Mechanism, ParameterValues};
 use crate::spatial::{Pose, Vec3};
 
-const KEYS: [&str; 17] = [
+const KEYS: [&str; 18] = [
     "name",
     "description",
     "source",
@@ -60,6 +66,7 @@ const KEYS: [&str; 17] = [
     "closure",
     "elasticity",
     "robot",
+    "parameters",
 ];
 
 /// The mechanism and its description.
@@ -67,6 +74,7 @@ pub(in crate::model) fn describe(
     text: &str,
     path: &Path,
     format: &'static str,
+    given: ParameterValues<'_>,
     (depth, loader): (usize, Loader<'_>),
     close: CloseHome<'_>,
 ) -> Result<(Mechanism, String)> {
@@ -76,7 +84,9 @@ pub(in crate::model) fn describe(
         let span = e.span().unwrap_or(0..0);
         source.error(span, format!("broken TOML: {}", e.message()), "")
     })?;
-    let file = Table::new(source, "a mechanism file", document.get_ref(), 0..0, &KEYS)?;
+    let parameters = Parameters::read(&source, document.get_ref(), given)?;
+    let file = Table::new(source, "a mechanism file", document.get_ref(), 0..0, &KEYS)?
+        .with_parameters(parameters.as_ref());
     let dimension = dimension(&file)?;
     let planar = dimension == Dimension::Planar;
 
@@ -155,6 +165,7 @@ pub(in crate::model) fn describe(
     let report = world.builder.report();
     report.format = format;
     report.source = file.string("source")?.unwrap_or("").to_owned();
+    report.parameters = parameters.as_ref().map_or_else(Vec::new, |p| p.list().to_vec());
     Ok((world.build(close)?, file.string("description")?.unwrap_or("").to_owned()))
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::describe;
 use crate::error::Result;
 use crate::model::formats::load::load_from;
-use crate::model::{CloseHome, Mechanism};
+use crate::model::{CloseHome, Mechanism, ParameterValues};
 
 /// Reads the text of a mechanism file without assembling home: loops closed by `[[closure]]` frames
 /// may be open there ([`Mechanism::unassembled`]). `cylindroid::load_text` closes them.
@@ -14,11 +14,29 @@ use crate::model::{CloseHome, Mechanism};
 /// [`Error::File`](crate::Error::File) with line and column for broken TOML, unknown keys, values
 /// of a wrong type, and everything that the builder rejects; the errors of included files.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
-    read(text, path, &Ok)
+    read(text, path, &[], &Ok)
 }
 
-/// Reads the text of a mechanism file; `close` assembles home.
-pub(crate) fn read(text: &str, path: &Path, close: CloseHome<'_>) -> Result<Mechanism> {
-    let loader = |from: &Path, name: &str, depth| load_from(from, name, depth, close);
-    Ok(describe(text, path, "mechanism file", (0, &loader), close)?.0)
+/// Reads the text of a mechanism file with these values of parameters; `close` assembles home.
+pub(crate) fn read(
+    text: &str,
+    path: &Path,
+    given: ParameterValues<'_>,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
+    read_at(text, path, given, 0, close)
+}
+
+/// [`read`] at a nesting depth of `depth` inclusions.
+pub(in crate::model::formats) fn read_at(
+    text: &str,
+    path: &Path,
+    given: ParameterValues<'_>,
+    depth: usize,
+    close: CloseHome<'_>,
+) -> Result<Mechanism> {
+    let loader = |from: &Path, name: &str, depth, values: ParameterValues<'_>| {
+        load_from(from, name, values, depth, close)
+    };
+    Ok(describe(text, path, "mechanism file", given, (depth, &loader), close)?.0)
 }

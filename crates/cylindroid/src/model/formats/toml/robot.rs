@@ -1,7 +1,7 @@
 //! The `[[robot]]` tables of a mechanism file: robots of other files and of the catalogue.
 //!
 //! Keys     model (a name of the catalogue, or a path from this file's folder), name, link, base
-//!          (xyz, rpy), start, free, actuated, passive
+//!          (xyz, rpy), start, free, actuated, passive, parameters (values of those of its file)
 //! Formula  world_from_root = world_from_link base; home is the robot's start
 //! Why so   links, joints and frames of a robot get the prefix `name/`; those of a robot without a
 //!          name keep their names, so that joints and contacts can be added to an unchanged URDF
@@ -14,14 +14,16 @@ use super::tree::{self, JointEntry};
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
-use crate::model::{Dimension, Inclusion, Mechanism};
+use crate::model::{Dimension, Inclusion, Mechanism, ParameterValues};
 use crate::spatial::Pose;
 
-const KEYS: [&str; 8] = ["name", "model", "link", "base", "start", "free", "actuated", "passive"];
+const KEYS: [&str; 9] =
+    ["name", "model", "link", "base", "start", "free", "actuated", "passive", "parameters"];
 
 /// Loads the model of a `[[robot]]` table: from the folder of the file, by name or path, at a
-/// depth of inclusion.
-pub(in crate::model) type Loader<'a> = &'a dyn Fn(&Path, &str, usize) -> Result<Mechanism>;
+/// depth of inclusion, with these values of its parameters.
+pub(in crate::model) type Loader<'a> =
+    &'a dyn Fn(&Path, &str, usize, ParameterValues<'_>) -> Result<Mechanism>;
 
 /// Maximum depth of inclusion; deeper nesting is treated as a cycle.
 const DEEPEST: usize = 8;
@@ -116,7 +118,13 @@ fn load(table: &Table<'_>, depth: usize, loader: Loader<'_>) -> Result<Mechanism
         return Err(table.refuse("model", message, "does a file include itself?"));
     }
     let folder = table.source.path.parent().unwrap_or_else(|| Path::new(""));
-    match loader(folder, model, depth + 1) {
+    let values = table.named_numbers("parameters")?.unwrap_or_default();
+    let values: Vec<(&str, f64)> = values.iter().map(|(name, x, _)| (*name, *x)).collect();
+    match loader(folder, model, depth + 1, &values) {
+        Err(
+            error @ (Error::UnknownName { what: "parameter", .. }
+            | Error::InvalidOption { option: "parameter", .. }),
+        ) => Err(table.refuse("parameters", error.to_string(), "")),
         Err(error) if !matches!(error, Error::File(_)) => {
             let help = "name a catalogue model, or a file by its path from this file's folder";
             Err(table.refuse("model", error.to_string(), help))

@@ -8,6 +8,7 @@ use std::ops::Range;
 use ::toml::Spanned;
 use ::toml::de::{DeString, DeTable, DeValue};
 
+use super::parameters::{self, Parameters};
 use crate::error::{Error, Result};
 use crate::model::Limits;
 use crate::model::formats::span::Source;
@@ -22,6 +23,8 @@ pub(super) struct Table<'t> {
     what: &'static str,
     map: &'t DeTable<'t>,
     pub(super) span: Range<usize>,
+    /// With them, expressions may replace numbers.
+    parameters: Option<&'t Parameters>,
 }
 
 /// An entry of a list.
@@ -47,7 +50,34 @@ impl<'t> Table<'t> {
                 return Err(source.error(key.span(), format!("{unknown} (in {what})"), help));
             }
         }
-        Ok(Self { source, what, map, span })
+        Ok(Self { source, what, map, span, parameters: None })
+    }
+
+    /// The same table, in which expressions of these parameters may replace numbers.
+    pub(super) fn with_parameters(self, parameters: Option<&'t Parameters>) -> Self {
+        Self { parameters, ..self }
+    }
+
+    /// A table inside this one.
+    fn inside(
+        &self,
+        what: &'static str,
+        map: &'t DeTable<'t>,
+        span: Range<usize>,
+        keys: &[&str],
+    ) -> Result<Self> {
+        Ok(Self::new(self.source, what, map, span, keys)?.with_parameters(self.parameters))
+    }
+
+    /// The value as a number that is not NaN, if it is one; that of an expression where the file has
+    /// parameters.
+    fn value(&self, value: &Spanned<DeValue<'_>>) -> Result<Option<f64>> {
+        match (value.get_ref().as_str(), self.parameters) {
+            (Some(text), Some(parameters)) => {
+                parameters::evaluate(&self.source, (text, value.span()), parameters).map(Some)
+            }
+            _ => Ok(number(value.get_ref())),
+        }
     }
 
     fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
@@ -102,7 +132,7 @@ impl<'t> Table<'t> {
     /// A number, which may be infinite.
     pub(super) fn bound(&self, key: &str) -> Result<Option<f64>> {
         let Some(value) = self.get(key) else { return Ok(None) };
-        let Some(x) = number(value.get_ref()) else {
+        let Some(x) = self.value(value)? else {
             return Err(self.wrong_type(key, "a number", value.get_ref()));
         };
         match magnitude::bound_fault(&[x]) {
@@ -133,7 +163,7 @@ impl<'t> Table<'t> {
     pub(super) fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>> {
         let Some(array) = self.array(key)? else { return Ok(None) };
         let read = |entry: &Spanned<DeValue<'_>>| {
-            let read = number(entry.get_ref());
+            let read = self.value(entry)?;
             entry_of(key, read)
                 .map_err(|message| self.source.error(entry.span(), message, "give numbers"))
         };
@@ -145,7 +175,7 @@ impl<'t> Table<'t> {
         let array = self.array(key)?.unwrap_or_default();
         let read = |entry: &Spanned<DeValue<'_>>| {
             let help = "give numbers, or rows of numbers";
-            let read = number(entry.get_ref());
+            let read = self.value(entry)?;
             entry_of(key, read).map_err(|message| self.source.error(entry.span(), message, help))
         };
         let is_row = |entry: &Spanned<DeValue<'_>>| matches!(entry.get_ref(), DeValue::Array(_));
@@ -162,7 +192,9 @@ impl<'t> Table<'t> {
     /// Two numbers, which may be infinite.
     pub(super) fn two_bounds(&self, key: &str) -> Result<Option<[f64; 2]>> {
         let Some(array) = self.array(key)? else { return Ok(None) };
-        let read: Vec<f64> = array.iter().filter_map(|entry| number(entry.get_ref())).collect();
+        let read: Vec<Option<f64>> =
+            array.iter().map(|entry| self.value(entry)).collect::<Result<_>>()?;
+        let read: Vec<f64> = read.into_iter().flatten().collect();
         let found = <[f64; 2]>::try_from(read).ok().filter(|_| array.len() == 2);
         let wrong = || self.refuse(key, format!("{key} is not a list of two numbers"), "give two");
         found.map(Some).ok_or_else(wrong)
@@ -178,9 +210,9 @@ impl<'t> Table<'t> {
         let Some(array) = self.array(key)? else { return Ok(None) };
         let read = |entry: &'t Spanned<DeValue<'t>>| match entry.get_ref() {
             DeValue::Table(map) => {
-                Self::new(self.source, what, map, entry.span(), keys).map(NumberOrTable::Table)
+                self.inside(what, map, entry.span(), keys).map(NumberOrTable::Table)
             }
-            value => number(value).map(NumberOrTable::Number).ok_or_else(|| {
+            _ => self.value(entry)?.map(NumberOrTable::Number).ok_or_else(|| {
                 let message = format!("an entry of {key} is neither a number nor a table");
                 let help = format!("give numbers, or tables of {}", keys.join(", "));
                 self.source.error(entry.span(), message, help)
@@ -259,7 +291,7 @@ impl<'t> Table<'t> {
         let read =
             |(name, value): (&'t Spanned<DeString<'t>>, &'t Spanned<DeValue<'t>>)| match entry_of(
                 key,
-                number(value.get_ref()),
+                self.value(value)?,
             ) {
                 Ok(x) => Ok((name.get_ref().as_ref(), x, name.span())),
                 Err(message) => Err(self.source.error(value.span(), message, "give numbers")),
@@ -276,7 +308,7 @@ impl<'t> Table<'t> {
     ) -> Result<Option<Self>> {
         let Some(value) = self.get(key) else { return Ok(None) };
         match value.get_ref() {
-            DeValue::Table(map) => Self::new(self.source, what, map, value.span(), keys).map(Some),
+            DeValue::Table(map) => self.inside(what, map, value.span(), keys).map(Some),
             other => Err(self.wrong_type(key, "a table", other)),
         }
     }
@@ -284,7 +316,7 @@ impl<'t> Table<'t> {
     /// The tables of a list, `[[key]]` or `key = [{ ... }, ...]`.
     pub(super) fn tables(&self, key: &str, what: &'static str, keys: &[&str]) -> Result<Vec<Self>> {
         let read = |entry: &'t Spanned<DeValue<'t>>| match entry.get_ref() {
-            DeValue::Table(map) => Self::new(self.source, what, map, entry.span(), keys),
+            DeValue::Table(map) => self.inside(what, map, entry.span(), keys),
             _ => {
                 let help = format!("write {what}");
                 Err(self.source.error(entry.span(), format!("an entry of {key} is no table"), help))
@@ -316,7 +348,7 @@ impl<'t> Table<'t> {
 }
 
 /// The value as a number that is not NaN.
-fn number(value: &DeValue<'_>) -> Option<f64> {
+pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
     let x = match value {
         #[allow(clippy::cast_precision_loss)] // integers of a robot's file are small
         DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok()? as f64,
