@@ -28,7 +28,7 @@ Examples:
   cylindroid sweep panda --samples 1e4 --quantities yoshikawa,condition,limit_distance
   cylindroid sweep panda --samples 1e5 --quantities pose,jacobian,singular_values --out map
   cylindroid sweep ur5e --over shoulder_lift_joint=-3:0:61 --over elbow_joint=0:3:61 --task x,y,z
-  cylindroid sweep docs/designs.toml --over crank=0.4:0.7:5 --over point_x=-0.2:0.2:9 --quantities measures
+  cylindroid sweep docs/designs.toml --over crank=0.4:0.7:5 --quantities measures
   cylindroid sweep docs/designs.toml --vary crank=0.4:0.7 --designs 100 --quantities measures
   cylindroid sweep stewart --configurations configurations.csv --quantities pose,measures
 

@@ -46,7 +46,8 @@ fn wrong_values_are_refused() {
     assert!(range.contains("--parameter = crank = 1.5") && range.contains("0.2 to 1"), "{range}");
     assert!(with("crank").contains("a name, = and a number"));
     assert!(with("crank=x").contains("'x' is not a number"));
-    assert!(with("rod=0.25").contains("sqrt(rod^2 - (width / 2)^2) is not a number"));
+    let short = with("rod=0.25");
+    assert!(short.contains("sqrt(rod^2") && short.contains("five_bar_parameters.toml"), "{short}");
     let panda = refused(&["fk", "panda", "--parameter", "crank=0.4"]);
     assert!(panda.contains("has no parameters"), "{panda}");
     let twists = refused(&["screws", "../../docs/three-lines.csv", "--parameter", "a=1"]);
