@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import pathlib
 
 import numpy as np
 import pyarrow.parquet as parquet
@@ -121,3 +122,41 @@ def test_what_is_not_given(tmp_path):
         cy.sweep(cy.load("five-bar"), samples=10)
     with pytest.raises(cy.UnknownNameError, match="yoshikawa"):
         cy.sweep(robot, samples=10, quantities=["yoshikava"])
+
+
+DESIGNS = pathlib.Path(__file__).parents[3] / "docs/designs.toml"
+
+
+def test_designs_of_a_mechanism_file():
+    r = cy.load(DESIGNS, parameters={"point_y": 0.9})
+    over = {"crank": (0.4, 0.7, 4), "point_x": (-0.1, 0.1, 3)}
+    found = cy.sweep(r, over=over, quantities=["pose", "measures"])
+    assert list(found)[:5] == ["index", "design", "design_valid", "crank", "point_x"]
+    assert found["design_valid"].all() and (found["design"] == np.arange(12)).all()
+    np.testing.assert_allclose(found["y"], 0.9, atol=1e-14)
+    np.testing.assert_allclose(found["x"], found["point_x"], atol=1e-14)
+    one = cy.load(DESIGNS, parameters={"point_y": 0.9, "crank": 0.5, "point_x": 0.1})
+    own = cy.sweep(one, configurations=[one.home], quantities=["measures"])
+    assert found["anisotropy"][5] == own["anisotropy"][0]
+    sampled = cy.sweep(r, vary={"rod": (0.1, 1.0)}, designs=64, seed=3, quantities=["measures"])
+    valid = sampled["design_valid"] == 1
+    assert 10 < valid.sum() < 60
+    assert (np.isnan(sampled["anisotropy"]) == ~valid).all()
+    text = cy.parse(DESIGNS.read_text(), "toml", DESIGNS, {"point_y": 0.9})
+    again = cy.sweep(text, over=over, quantities=["measures"])
+    np.testing.assert_array_equal(again["anisotropy"], found["anisotropy"])
+
+
+def test_wrong_designs_are_refused():
+    r = cy.load(DESIGNS)
+    with pytest.raises(cy.UnknownNameError, match="coordinate or parameter"):
+        cy.sweep(r, over={"cranck": (0.4, 0.7, 4)})
+    with pytest.raises(cy.InvalidOptionError, match="over or in vary"):
+        cy.sweep(r, over={"crank": (0.4, 0.7, 4)}, vary={"rod": (0.5, 0.6)}, designs=3)
+    with pytest.raises(cy.InvalidOptionError, match="1 to 2"):
+        cy.sweep(r, vary={"rod": (0.5, 0.6)}, quantities=["measures"])
+    with pytest.raises(cy.InvalidOptionError, match="its range is 0.05 to 2"):
+        cy.sweep(r, vary={"rod": (0.5, 6.0)}, designs=3, quantities=["measures"])
+    limited = r.with_actuated(["left_drive", "right_drive"])
+    with pytest.raises(cy.InvalidOptionError, match="changed after loading"):
+        cy.sweep(limited, over={"crank": (0.4, 0.7, 4)}, quantities=["measures"])

@@ -35,6 +35,7 @@ mod mimic;
 mod natural_order;
 mod node;
 mod parameter;
+mod parameters_of_mechanism;
 mod regular_file;
 mod report;
 mod tool_choice;

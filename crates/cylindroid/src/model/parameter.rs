@@ -1,7 +1,5 @@
 //! Parameters of a model: named numbers from which its file derives geometry, limits and masses.
 
-use super::mechanism::Mechanism;
-
 /// A parameter of a mechanism file, with the value that the model was built with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
@@ -19,14 +17,6 @@ pub struct Parameter {
     pub description: String,
     /// The expression of other parameters that gives the value; empty for a number.
     pub expression: String,
-}
-
-impl Mechanism {
-    /// The parameters of its file, with the values that it was built with.
-    #[must_use]
-    pub fn parameters(&self) -> &[Parameter] {
-        &self.report().parameters
-    }
 }
 
 /// Values of parameters by name, in place of those of the file.

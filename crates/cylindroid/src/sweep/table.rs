@@ -1,4 +1,6 @@
 //! Rows of a sweep in columns.
+//!
+//! Checked  tests/sweep/quantities.rs
 
 use std::borrow::Cow;
 

@@ -107,7 +107,11 @@ fn read_file(
 ) -> Result<Mechanism> {
     let file = text_file::read(path)?;
     if is_mechanism_file(path) {
-        return toml::read_at(&utf8_of(file, path)?, path, given, depth, close);
+        let loader = |from: &Path, name: &str, depth, values: ParameterValues<'_>| {
+            load_from(from, name, values, depth, close)
+        };
+        let (text, depth) = (utf8_of(file, path)?, (depth, &loader as toml::Loader<'_>));
+        return Ok(toml::describe(&text, path, "mechanism file", given, depth, close)?.0);
     }
     if let Some((name, _)) = given.first() {
         return Err(toml::none(name, &shown(path)));

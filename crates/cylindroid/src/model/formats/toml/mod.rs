@@ -26,13 +26,13 @@ mod parse;
 mod robot;
 mod tree;
 mod value;
+mod values;
 mod world;
 
 pub use self::limits_file::{with_limits_of_file, with_limits_of_text};
 pub(in crate::model) use self::parameters::none;
 pub use self::parse::parse;
 pub(crate) use self::parse::read;
-pub(super) use self::parse::read_at;
 pub(in crate::model) use self::robot::Loader;
 
 use std::path::Path;
@@ -86,7 +86,7 @@ pub(in crate::model) fn describe(
     })?;
     let parameters = Parameters::read(&source, document.get_ref(), given)?;
     let file = Table::new(source, "a mechanism file", document.get_ref(), 0..0, &KEYS)?
-        .with_parameters(parameters.as_ref());
+        .with_parameters(parameters.as_ref().map(Parameters::values));
     let dimension = dimension(&file)?;
     let planar = dimension == Dimension::Planar;
 

@@ -18,6 +18,7 @@ use ::toml::de::{DeTable, DeValue};
 
 use super::expression::{self, Expression};
 use super::value::Table;
+use super::values::{Values, parse};
 use crate::error::{Error, Result, shown};
 use crate::model::formats::span::Source;
 use crate::model::{Parameter, ParameterValues, magnitude};
@@ -28,7 +29,7 @@ const KEYS: [&str; 5] = ["value", "lower", "upper", "unit", "description"];
 /// The parameters of a file with their values.
 #[derive(Debug)]
 pub(super) struct Parameters {
-    index: BTreeMap<String, usize>,
+    values: Values,
     list: Vec<Parameter>,
 }
 
@@ -77,59 +78,57 @@ impl Parameters {
             Error::check_within(name, &[*value], MAX_MAGNITUDE)?;
             definitions[place].given = Some(*value);
         }
-        let parameters = Self::evaluated(source, &definitions)?;
-        let ranged = definitions.iter().zip(&parameters.list);
-        let ranged: Vec<Parameter> = ranged
-            .map(|(definition, own)| definition.with_range(own, &parameters))
-            .collect::<Result<_>>()?;
-        Ok(Some(Self { list: ranged, ..parameters }))
+        let values = evaluated(source, &definitions)?;
+        let ranged = definitions.iter().map(|definition| definition.parameter(&values));
+        let list = ranged.collect::<Result<_>>()?;
+        Ok(Some(Self { values, list }))
     }
 
-    /// The values: first of numbers, then of expressions whose parameters have theirs.
-    fn evaluated(source: &Source<'_>, definitions: &[Definition<'_>]) -> Result<Self> {
-        let index: BTreeMap<String, usize> =
-            definitions.iter().enumerate().map(|(i, d)| (d.name.to_owned(), i)).collect();
-        let mut list: Vec<Parameter> = definitions.iter().map(Definition::blank).collect();
-        // How many names of each are without a value, and who waits for each.
-        let mut missing = vec![0; definitions.len()];
-        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); definitions.len()];
-        for (i, definition) in definitions.iter().enumerate() {
-            for name in definition.names() {
-                if let Some(&of) = index.get(name) {
-                    missing[i] += 1;
-                    waiting[of].push(i);
-                }
-            }
-        }
-        let mut ready: Vec<usize> = (0..definitions.len()).filter(|&i| missing[i] == 0).collect();
-        let mut parameters = Self { index, list: Vec::new() };
-        let mut count = 0;
-        while let Some(i) = ready.pop() {
-            count += 1;
-            let value_of = |name: &str| parameters.index.get(name).map(|&of| list[of].value);
-            list[i].value = definitions[i].value(source, value_of, &parameters.index)?;
-            for &next in &waiting[i] {
-                missing[next] -= 1;
-                if missing[next] == 0 {
-                    ready.push(next);
-                }
-            }
-        }
-        if count < definitions.len() {
-            return Err(cycle(source, definitions, &parameters.index, &missing));
-        }
-        parameters.list = list;
-        Ok(parameters)
-    }
-
-    fn value_of(&self, name: &str) -> Option<f64> {
-        self.index.get(name).map(|&i| self.list[i].value)
+    /// The values, for expressions.
+    pub(super) fn values(&self) -> &Values {
+        &self.values
     }
 
     /// The parameters, in the order of the file.
     pub(super) fn list(&self) -> &[Parameter] {
         &self.list
     }
+}
+
+/// The values: first of numbers, then of expressions whose parameters have theirs.
+fn evaluated(source: &Source<'_>, definitions: &[Definition<'_>]) -> Result<Values> {
+    let index: BTreeMap<&str, usize> =
+        definitions.iter().enumerate().map(|(i, d)| (d.name, i)).collect();
+    // How many names of each are without a value, and who waits for each.
+    let mut missing = vec![0; definitions.len()];
+    let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); definitions.len()];
+    for (i, definition) in definitions.iter().enumerate() {
+        for name in definition.names() {
+            if let Some(&of) = index.get(name) {
+                missing[i] += 1;
+                waiting[of].push(i);
+            }
+        }
+    }
+    let mut ready: Vec<usize> = (0..definitions.len()).filter(|&i| missing[i] == 0).collect();
+    // All names, so that an unknown one is compared with them.
+    let mut values = Values(definitions.iter().map(|d| (d.name.to_owned(), f64::NAN)).collect());
+    let mut count = 0;
+    while let Some(i) = ready.pop() {
+        count += 1;
+        let value = definitions[i].value(source, &values)?;
+        values.0.insert(definitions[i].name.to_owned(), value);
+        for &next in &waiting[i] {
+            missing[next] -= 1;
+            if missing[next] == 0 {
+                ready.push(next);
+            }
+        }
+    }
+    if count < definitions.len() {
+        return Err(cycle(source, definitions, &index, &missing));
+    }
+    Ok(values)
 }
 
 impl<'t> Definition<'t> {
@@ -169,34 +168,12 @@ impl<'t> Definition<'t> {
         own.into_iter().flat_map(Expression::names)
     }
 
-    fn blank(&self) -> Parameter {
-        Parameter {
-            name: self.name.to_owned(),
-            value: f64::NAN,
-            lower: f64::NEG_INFINITY,
-            upper: f64::INFINITY,
-            unit: String::new(),
-            description: String::new(),
-            expression: match (self.given, self.value.get_ref().as_str()) {
-                (None, Some(text)) => text.to_owned(),
-                _ => String::new(),
-            },
-        }
-    }
-
-    fn value(
-        &self,
-        source: &Source<'_>,
-        value_of: impl Fn(&str) -> Option<f64>,
-        known: &BTreeMap<String, usize>,
-    ) -> Result<f64> {
+    fn value(&self, source: &Source<'_>, values: &Values) -> Result<f64> {
         if let Some(given) = self.given {
             return Ok(given);
         }
         let x = match &self.expression {
-            Some(own) => own
-                .value(value_of, |name| Error::unknown("parameter", name, known.keys()).to_string())
-                .map_err(|fault| at(source, (own.text(), self.value.span()), fault, ""))?,
+            Some(own) => values.value(source, own, self.value.span())?,
             None => super::value::number(self.value.get_ref()).ok_or_else(|| {
                 let message = format!("parameter '{}' is no number", self.name);
                 let help = "give a number, an expression in quotes, or a table with value";
@@ -212,13 +189,25 @@ impl<'t> Definition<'t> {
         }
     }
 
-    /// The parameter with range, unit and description; a value out of range is refused.
-    fn with_range(&self, own: &Parameter, all: &Parameters) -> Result<Parameter> {
-        let Some(table) = self.table.clone() else { return Ok(own.clone()) };
-        let table = table.with_parameters(Some(all));
+    /// The parameter; a value out of its range is refused.
+    fn parameter(&self, values: &Values) -> Result<Parameter> {
+        let name = self.name;
+        let own = Parameter {
+            name: name.to_owned(),
+            value: values.0.get(name).copied().unwrap_or(f64::NAN),
+            lower: f64::NEG_INFINITY,
+            upper: f64::INFINITY,
+            unit: String::new(),
+            description: String::new(),
+            expression: match (self.given, self.value.get_ref().as_str()) {
+                (None, Some(text)) => text.to_owned(),
+                _ => String::new(),
+            },
+        };
+        let Some(table) = self.table.clone() else { return Ok(own) };
+        let table = table.with_parameters(Some(values));
         let lower = table.bound("lower")?.unwrap_or(own.lower);
         let upper = table.bound("upper")?.unwrap_or(own.upper);
-        let name = self.name;
         if lower > upper {
             let message = format!("the range of '{name}' is empty: {lower} to {upper}");
             return Err(table.refuse("lower", message, "give a lower one below the upper one"));
@@ -233,47 +222,15 @@ impl<'t> Definition<'t> {
         }
         let text = |key| table.string(key).map(|text| text.unwrap_or("").to_owned());
         let (unit, description) = (text("unit")?, text("description")?);
-        Ok(Parameter { lower, upper, unit, description, ..own.clone() })
+        Ok(Parameter { lower, upper, unit, description, ..own })
     }
-}
-
-/// The value of an expression in the file.
-pub(super) fn evaluate(
-    source: &Source<'_>,
-    text: (&str, Range<usize>),
-    parameters: &Parameters,
-) -> Result<f64> {
-    let unknown =
-        |name: &str| Error::unknown("parameter", name, parameters.index.keys()).to_string();
-    let value = parse(source, text.clone())?.value(|name| parameters.value_of(name), unknown);
-    value.map_err(|fault| at(source, text, fault, ""))
-}
-
-fn parse<'t>(source: &Source<'_>, text: (&'t str, Range<usize>)) -> Result<Expression<'t>> {
-    Expression::parse(text.0).map_err(|fault| at(source, text, fault, expression::help()))
-}
-
-/// An error inside a text of the file.
-fn at(
-    source: &Source<'_>,
-    (text, span): (&str, Range<usize>),
-    fault: expression::Fault,
-    help: impl Into<String>,
-) -> Error {
-    // Behind the quotes; a text with escapes has other places than the file.
-    let written = source.text.get(span.clone()).and_then(|written| written.find(text));
-    let place = written.map_or(span.clone(), |quotes| {
-        let start = span.start + quotes;
-        start + fault.span.start..start + fault.span.end
-    });
-    source.error(place, fault.message, help)
 }
 
 /// Parameters that wait for one another.
 fn cycle(
     source: &Source<'_>,
     definitions: &[Definition<'_>],
-    index: &BTreeMap<String, usize>,
+    index: &BTreeMap<&str, usize>,
     missing: &[usize],
 ) -> Error {
     let next = |i: usize| {

@@ -24,19 +24,8 @@ pub(crate) fn read(
     given: ParameterValues<'_>,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
-    read_at(text, path, given, 0, close)
-}
-
-/// [`read`] at a nesting depth of `depth` inclusions.
-pub(in crate::model::formats) fn read_at(
-    text: &str,
-    path: &Path,
-    given: ParameterValues<'_>,
-    depth: usize,
-    close: CloseHome<'_>,
-) -> Result<Mechanism> {
     let loader = |from: &Path, name: &str, depth, values: ParameterValues<'_>| {
         load_from(from, name, values, depth, close)
     };
-    Ok(describe(text, path, "mechanism file", given, (depth, &loader), close)?.0)
+    Ok(describe(text, path, "mechanism file", given, (0, &loader), close)?.0)
 }

@@ -8,7 +8,7 @@ use std::ops::Range;
 use ::toml::Spanned;
 use ::toml::de::{DeString, DeTable, DeValue};
 
-use super::parameters::{self, Parameters};
+use super::values::Values;
 use crate::error::{Error, Result};
 use crate::model::Limits;
 use crate::model::formats::span::Source;
@@ -24,7 +24,7 @@ pub(super) struct Table<'t> {
     map: &'t DeTable<'t>,
     pub(super) span: Range<usize>,
     /// With them, expressions may replace numbers.
-    parameters: Option<&'t Parameters>,
+    parameters: Option<&'t Values>,
 }
 
 /// An entry of a list.
@@ -54,7 +54,7 @@ impl<'t> Table<'t> {
     }
 
     /// The same table, in which expressions of these parameters may replace numbers.
-    pub(super) fn with_parameters(self, parameters: Option<&'t Parameters>) -> Self {
+    pub(super) fn with_parameters(self, parameters: Option<&'t Values>) -> Self {
         Self { parameters, ..self }
     }
 
@@ -74,7 +74,7 @@ impl<'t> Table<'t> {
     fn value(&self, value: &Spanned<DeValue<'_>>) -> Result<Option<f64>> {
         match (value.get_ref().as_str(), self.parameters) {
             (Some(text), Some(parameters)) => {
-                parameters::evaluate(&self.source, (text, value.span()), parameters).map(Some)
+                parameters.evaluate(&self.source, (text, value.span())).map(Some)
             }
             _ => Ok(number(value.get_ref())),
         }
