@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, AxisKinds, DesignSpace, ParameterRange, Progress, Quantity, Source, Summary, Sweep,
     SweepOptions, Values, VelocityMetric, WriteOptions, parquet_configurations,
@@ -84,8 +85,8 @@ impl PySweepSummary {
 /// tool : array_like, (4, 4), optional
 ///     `frame_from_tool`, a tool point fixed to the frame.
 /// task : str, optional
-///     The components that the measures of the Jacobian see, world axes: 'x,y,z,rx,ry,rz' or some of
-///     them. Default: all, in the plane 'x,y,rz'.
+///     The components that the measures of the Jacobian see, world axes: 'pose', 'position',
+///     'orientation', or some of 'x,y,z,rx,ry,rz'. Default: 'pose'.
 /// metric : str
 ///     Of 'yoshikawa' and 'measures': 'unit', 'length' or 'limits', as for `manipulability`.
 /// length : float, optional
@@ -187,23 +188,19 @@ pub(crate) fn sweep<'py>(
             return Err(Failure::option("samples", "", reason));
         }
     };
-    let default = || ["pose", "yoshikawa", "smallest_singular_value", "limit_distance"];
-    let named = quantities.unwrap_or_else(|| {
-        let all: &[&str] = if mechanism.is_closed() { &["pose", "measures"] } else { &default() };
-        all.iter().map(|name| (*name).to_owned()).collect()
-    });
+    let quantities = match quantities {
+        None => Quantity::usual(&mechanism).to_vec(),
+        Some(named) => {
+            named.iter().map(|name| Quantity::named(name)).collect::<cylindroid::Result<_>>()?
+        }
+    };
     let chosen = frame.is_some() || tool.is_some();
     let end_effector = if chosen { Some(robot.end_effector(frame, tool.as_ref())?) } else { None };
     let options = SweepOptions {
         source,
-        quantities: named
-            .iter()
-            .map(|name| Quantity::named(name))
-            .collect::<cylindroid::Result<_>>()?,
+        quantities,
         end_effector,
-        task: task.map_or_else(Vec::new, |names| {
-            names.split(',').map(|name| name.trim().to_owned()).collect()
-        }),
+        task: task.map(|name| Task::named(name, &mechanism)).transpose()?,
         metric: VelocityMetric::named(metric)?,
         length,
         part_rows: if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS },

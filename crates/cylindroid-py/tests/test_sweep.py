@@ -112,6 +112,37 @@ def test_files_of_other_programs(tmp_path):
     assert np.array_equal(again["x"], found["x"])
 
 
+def test_columns_of_other_kinds(tmp_path):
+    """Several groups of rows, whole numbers and short ones; a gap is named by its row."""
+    import pyarrow
+
+    robot = cy.load("3r")
+    a, b, c = robot.joint_names
+    rows = 2500
+    q = np.column_stack([np.arange(rows) % 3, np.arange(rows) % 2, np.linspace(-1, 1, rows)])
+    q[:, 2] = q[:, 2].astype(np.float32)
+    columns = {
+        c: pyarrow.array(q[:, 2], pyarrow.float32()),
+        "note": pyarrow.array(["x"] * rows),
+        a: pyarrow.array(q[:, 0].astype(int), pyarrow.int64()),
+        b: pyarrow.array(q[:, 1].astype(int), pyarrow.int32()),
+    }
+    path = tmp_path / "kinds.parquet"
+    parquet.write_table(pyarrow.table(columns), path, row_group_size=1000)
+    found = cy.sweep(robot, configurations=path, quantities=["pose"])
+    for name, column in zip(robot.joint_names, q.T):
+        assert np.array_equal(found[name], column)
+    gap = [None if i == 1200 else 0.5 for i in range(rows)]
+    columns[b] = pyarrow.array(gap, pyarrow.float64())
+    parquet.write_table(pyarrow.table(columns), path, row_group_size=1000)
+    with pytest.raises(cy.UnreadableFileError, match=f"row 1201, column '{b}': no number"):
+        cy.sweep(robot, configurations=path, quantities=["pose"])
+    columns[b] = columns["note"]
+    parquet.write_table(pyarrow.table(columns), path)
+    with pytest.raises(cy.UnreadableFileError, match=f"row 1, column '{b}': no number"):
+        cy.sweep(robot, configurations=path, quantities=["pose"])
+
+
 def test_what_is_not_given(tmp_path):
     robot = cy.load("panda")
     with pytest.raises(cy.InvalidOptionError, match="one of samples, over and configurations"):

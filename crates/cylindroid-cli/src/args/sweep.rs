@@ -89,17 +89,18 @@ pub(crate) struct SweepArgs {
     pub(crate) configurations: Option<PathBuf>,
 
     /// The quantities of each configuration, see below
+    /// [default: pose,yoshikawa,smallest_singular_value,limit_distance; of a closed chain
+    /// pose,measures]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    #[arg(default_value = "pose,yoshikawa,smallest_singular_value,limit_distance")]
     pub(crate) quantities: Vec<String>,
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// Components of the twist that the measures of the Jacobian see, world axes: x,y,z,rx,ry,rz
-    /// [default: all; in the plane x,y,rz]
-    #[arg(long, value_name = "COMPONENTS", value_delimiter = ',')]
-    pub(crate) task: Vec<String>,
+    /// Components of the twist that the measures of the Jacobian see: pose, position, orientation,
+    /// or a list of x,y,z,rx,ry,rz, in world axes [default: pose]
+    #[arg(long, value_name = "TASK")]
+    pub(crate) task: Option<String>,
 
     /// Metric of yoshikawa and measures: `unit` (m and rad, unscaled), `length` (lengths over the
     /// characteristic length), `limits` (as `length`, and joint velocities over their limits)

@@ -138,7 +138,7 @@ fn what_cannot_be_swept_is_refused() {
     let some = ["sweep", "panda", "--samples", "10"];
     let with = |more: &[&str]| refused(&[&some[..], more].concat());
     assert!(with(&["--quantities", "poze"]).contains("--quantities: no quantity named 'poze'"));
-    assert!(with(&["--task", "w"]).contains("--task: no component named 'w'"));
+    assert!(with(&["--task", "w"]).contains("--task: no task or task component named 'w'"));
     assert!(with(&["--over", "a=0:1:2"]).contains("cannot be used with"));
     assert!(with(&["--resume"]).contains("--out"));
     text(&[&some[..], &["--out", out]].concat());

@@ -32,7 +32,7 @@ const POSE: usize = 16;
 #[derive(Debug, Clone)]
 pub(super) struct Evaluator {
     mechanism: Mechanism,
-    quantities: Vec<Quantity>,
+    pub(super) quantities: Vec<Quantity>,
     pub(super) end_effector: EndEffector,
     /// Components of the twist that measures see.
     pub(super) task: Vec<usize>,
@@ -73,7 +73,7 @@ impl Evaluator {
                 ),
             });
         }
-        let task = components(mechanism, &options.task)?;
+        let task = components(mechanism, options.task)?;
         let factor = |i: &usize| if *i < 3 { 1.0 / length } else { 1.0 };
         let rows: Vec<(usize, f64)> = task.iter().map(|i| (*i, factor(i))).collect();
         let scaled = SingularValues::new(rows.clone(), vec![1.0; mechanism.n()]);
@@ -324,28 +324,28 @@ fn position_and_quaternion(m: &[f64]) -> [f64; 7] {
     [m[3], m[7], m[11], q.w, q.x, q.y, q.z]
 }
 
-/// The components of the twist that are meant.
-fn components(mechanism: &Mechanism, names: &[String]) -> Result<Vec<usize>> {
+/// The components of the twist that are meant: rows of the Jacobian.
+fn components(mechanism: &Mechanism, task: Option<Task>) -> Result<Vec<usize>> {
     let plane = mechanism.dimension() == Dimension::Planar;
-    let known: &[usize] = if plane { &[0, 1, 5] } else { &[0, 1, 2, 3, 4, 5] };
-    if names.is_empty() {
-        return Ok(known.to_vec());
+    let possible = if plane { Task::PLANAR } else { Task::POSE };
+    let refuse = |value: &str, reason: &str| {
+        Err(Error::InvalidOption {
+            option: "task",
+            value: value.to_owned(),
+            reason: reason.to_owned(),
+        })
+    };
+    let task = task.unwrap_or(possible);
+    task.check()?;
+    if task.axes != ReferenceFrame::LocalWorldAligned {
+        return refuse("local axes", "a sweep sees components in world axes");
     }
-    let mut chosen = Vec::new();
-    for name in names {
-        let found = known.iter().find(|i| Task::COMPONENTS[**i] == name);
-        let words = known.iter().map(|i| Task::COMPONENTS[*i]);
-        let i = *found.ok_or_else(|| Error::unknown("component", name, words))?;
-        if chosen.contains(&i) {
-            return Err(Error::InvalidOption {
-                option: "task",
-                value: name.clone(),
-                reason: "it is named twice".to_owned(),
-            });
-        }
-        chosen.push(i);
+    let rows: Vec<usize> =
+        (0..6).filter(|&i| task.components[i] && possible.components[i]).collect();
+    if rows.is_empty() {
+        return refuse("components out of the plane", "name at least one of x, y, rz");
     }
-    Ok(chosen)
+    Ok(rows)
 }
 
 /// Velocity limits of the actuated joints, which a metric of limits needs.
@@ -399,10 +399,10 @@ fn measures(
     let refuse = |option: &'static str, value: String, reason: &str| {
         Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
     };
-    if !options.task.is_empty() {
+    if options.task.is_some() {
         let reason = "measures are those of the whole twist; use yoshikawa, singular_values or \
                       condition";
-        return refuse("task", options.task.join(","), reason);
+        return refuse("task", Quantity::Measures.name().to_owned(), reason);
     }
     if end_effector.frame_from_tool != crate::spatial::Pose::IDENTITY {
         let reason = "measures are those of a frame of the model; define one at this point";

@@ -7,12 +7,15 @@ use std::ops::Range;
 use super::designs::{DesignSpace, Designs};
 use super::evaluate::Evaluator;
 use super::options::{PART_ROWS, SweepOptions};
+use super::quantity::Quantity;
 use super::recipe::Recipe;
 use super::source::Configurations;
 use super::table::{Column, Table};
 use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
+use crate::kinematics::EndEffector;
 use crate::model::Mechanism;
+use crate::task::Task;
 
 /// Parts at most: the manifest lists all of them.
 const MOST_PARTS: u64 = 10_000_000;
@@ -111,6 +114,24 @@ impl Sweep {
     #[must_use]
     pub fn designs(&self) -> Option<u64> {
         self.designs.as_ref().map(|designs| designs.count)
+    }
+
+    /// The frame of poses and Jacobians.
+    #[must_use]
+    pub const fn end_effector(&self) -> EndEffector {
+        self.evaluator.end_effector
+    }
+
+    /// The quantities, in the order of their columns.
+    #[must_use]
+    pub fn quantities(&self) -> &[Quantity] {
+        &self.evaluator.quantities
+    }
+
+    /// The components of the twist that the Jacobian's measures see, of [`Task::COMPONENTS`].
+    #[must_use]
+    pub fn task(&self) -> Vec<&'static str> {
+        self.evaluator.task.iter().map(|&i| Task::COMPONENTS[i]).collect()
     }
 
     /// The columns: `index`, the coordinates, then the quantities.

@@ -4,6 +4,7 @@ use super::quantity::Quantity;
 use super::source::Source;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
+use crate::task::Task;
 
 /// Rows of a part by default.
 pub(super) const PART_ROWS: u64 = 1 << 16;
@@ -17,9 +18,9 @@ pub struct SweepOptions {
     pub quantities: Vec<Quantity>,
     /// The frame: the reference of a closed chain, otherwise the tool, by default.
     pub end_effector: Option<EndEffector>,
-    /// The components of the twist that the Jacobian's measures see, of `x, y, z, rx, ry, rz` in
-    /// world axes. All if empty: `x, y, rz` in the plane.
-    pub task: Vec<String>,
+    /// The components of the twist that the Jacobian's measures see, in world axes; in the plane
+    /// those of the plane. All by default.
+    pub task: Option<Task>,
     /// The metric of [`Quantity::Yoshikawa`] and [`Quantity::Measures`].
     pub metric: VelocityMetric,
     /// Characteristic length (m): that of the mechanism by default.
@@ -34,7 +35,7 @@ impl Default for SweepOptions {
             source: Source::Samples { count: 0, seed: 0 },
             quantities: vec![Quantity::Pose, Quantity::Yoshikawa],
             end_effector: None,
-            task: Vec::new(),
+            task: None,
             metric: VelocityMetric::Unit,
             length: None,
             part_rows: PART_ROWS,

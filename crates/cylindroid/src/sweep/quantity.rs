@@ -85,6 +85,17 @@ impl Quantity {
         }
     }
 
+    /// Those that are computed where none are named: what a closed chain has, and what else others
+    /// have.
+    #[must_use]
+    pub fn usual(mechanism: &Mechanism) -> &'static [Self] {
+        if mechanism.is_closed() {
+            &[Self::Pose, Self::Measures]
+        } else {
+            &[Self::Pose, Self::Yoshikawa, Self::SmallestSingularValue, Self::LimitDistance]
+        }
+    }
+
     /// The quantity of this name.
     ///
     /// # Errors

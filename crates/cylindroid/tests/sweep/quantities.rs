@@ -1,6 +1,7 @@
 //! The columns against the analysis of one configuration.
 
 use cylindroid::closure::{ClosedChain, MotionSpace};
+use cylindroid::ik::Task;
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{BatchOptions, Manipulability, ManipulabilityBatch, Metrics};
 use cylindroid::screws::ScrewOptions;
@@ -85,11 +86,11 @@ fn singular_values_and_what_follows_from_them() {
 fn tasks_and_metrics_are_those_of_manipulability() {
     let robot = cylindroid::load("panda").unwrap();
     for metric in VelocityMetric::ALL {
-        for task in [&["x", "y", "z"][..], &["z", "rx"], &[]] {
+        for task in [Some("position"), Some("z, rx"), None] {
             let options = SweepOptions {
                 source: Source::Samples { count: 40, seed: 1 },
                 quantities: vec![Quantity::Yoshikawa],
-                task: task.iter().map(|c| (*c).to_owned()).collect(),
+                task: task.map(|name| Task::named(name, &robot).unwrap()),
                 metric,
                 ..Default::default()
             };
@@ -108,12 +109,11 @@ fn tasks_and_metrics_are_those_of_manipulability() {
                     _ => Metrics::UNIT,
                 };
                 let mut relation = relation;
-                if !task.is_empty() {
-                    let components = ["x", "y", "z", "rx", "ry", "rz"];
-                    let place = |name: &str| components.iter().position(|c| *c == name).unwrap();
-                    let map = Matrix::from_fn(task.len(), 6, |i, j| {
-                        f64::from(u8::from(place(task[i]) == j))
-                    });
+                if let Some(name) = task {
+                    let components = Task::named(name, &robot).unwrap().components;
+                    let rows: Vec<usize> = (0..6).filter(|i| components[*i]).collect();
+                    let map =
+                        Matrix::from_fn(rows.len(), 6, |i, j| f64::from(u8::from(rows[i] == j)));
                     relation = relation.task(&map).unwrap();
                     if metric != VelocityMetric::Unit {
                         metrics = metrics.for_task(&map).unwrap();
@@ -226,9 +226,12 @@ fn quantities_that_do_not_exist_are_refused() {
     let two = with(&[Quantity::Pose, Quantity::Pose]);
     assert!(refused("panda", two).contains("named twice"));
     assert!(refused("five-bar", with(&[Quantity::Yoshikawa])).contains("use measures"));
-    let task = SweepOptions { task: vec!["w".to_owned()], ..Default::default() };
-    assert!(refused("panda", task).contains("no component named 'w'"));
-    let task = vec!["x".to_owned()];
+    let with_task = |task: Task| SweepOptions { task: Some(task), ..Default::default() };
+    let local = Task { axes: ReferenceFrame::Local, ..Task::POSITION };
+    assert!(refused("panda", with_task(local)).contains("world axes"));
+    let none = Task { components: [false; 6], ..Task::POSE };
+    assert!(refused("panda", with_task(none)).contains("at least one"));
+    let task = Some(Task::POSITION);
     let measures = SweepOptions { task, ..with(&[Quantity::Measures]) };
     assert!(refused("panda", measures).contains("whole twist"));
     let length = SweepOptions { length: Some(0.0), ..Default::default() };

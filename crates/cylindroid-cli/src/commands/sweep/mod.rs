@@ -10,6 +10,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, AxisKinds, DesignSpace, ParameterRange, Progress, Quantity, Source, Sweep, SweepOptions,
     WriteOptions,
@@ -32,20 +33,19 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     let robot = load(&args.model, &[])?;
     let (source, space) = (source(&robot, args)?, designs(&robot, args)?);
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
-    let of_chain = robot.is_closed().then(|| robot.reference().into());
-    let frame = if named {
-        end_effector(&robot, &args.frame)?
+    let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
+    let quantities = if args.quantities.is_empty() {
+        Quantity::usual(&robot).to_vec()
     } else {
-        of_chain.unwrap_or(robot.tool().into())
+        args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?
     };
-    let quantities =
-        args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?;
+    let task = args.task.as_deref().map(|name| Task::named(name, &robot)).transpose()?;
     let part_rows = if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS };
     let options = SweepOptions {
         source: source.clone(),
         quantities,
-        end_effector: Some(frame),
-        task: args.task.clone(),
+        end_effector: frame,
+        task,
         metric: args.metric.metric(),
         length: args.length,
         part_rows: args.part_rows.map_or(part_rows, |count| count.0),
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         None => Sweep::new(&robot, options)?,
         Some(space) => Sweep::of_designs(&parametric(&args.model)?, space, options)?,
     };
-    let head = Head::of(&robot, &sweep, &source, args, frame);
+    let head = Head::of(&robot, &sweep, &source, args);
     let interrupt = Interrupt::new();
     let started = Instant::now();
     let bar = Bar::new(sweep.rows());

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
+use cylindroid::Mechanism;
 use cylindroid::sweep::{Column, Source, Statistics, Summary, Sweep};
-use cylindroid::{EndEffector, Mechanism};
 use serde::Serialize;
 
 use crate::args::SweepArgs;
@@ -18,8 +18,11 @@ pub(super) struct Head<'a> {
     rows: u64,
     /// In words.
     configurations: String,
-    quantities: &'a [String],
-    task: &'a [String],
+    quantities: Vec<&'static str>,
+    task: Vec<&'static str>,
+    /// True if it was asked for.
+    #[serde(skip)]
+    task_named: bool,
     metric: &'static str,
 }
 
@@ -28,8 +31,7 @@ impl<'a> Head<'a> {
         robot: &'a Mechanism,
         sweep: &Sweep,
         source: &Source,
-        args: &'a SweepArgs,
-        frame: EndEffector,
+        args: &SweepArgs,
     ) -> Self {
         let all = sweep.rows();
         let rows = all / sweep.designs().unwrap_or(1).max(1);
@@ -40,7 +42,7 @@ impl<'a> Head<'a> {
                 format!("grid of {}", counts.join(" x "))
             }
             Source::Home => "home".to_owned(),
-            _ if rows == 1 => "that of --q".to_owned(),
+            _ if args.configurations.is_none() => "that of --q".to_owned(),
             _ => format!("{rows} of a file"),
         };
         let configurations = match sweep.designs() {
@@ -49,11 +51,12 @@ impl<'a> Head<'a> {
         };
         Self {
             model: robot.name(),
-            frame: &robot.frame_of(frame.frame).name,
+            frame: &robot.frame_of(sweep.end_effector().frame).name,
             rows: all,
             configurations,
-            quantities: &args.quantities,
-            task: &args.task,
+            quantities: sweep.quantities().iter().map(|q| q.name()).collect(),
+            task: sweep.task(),
+            task_named: args.task.is_some(),
             metric: args.metric.metric().name(),
         }
     }
@@ -151,7 +154,7 @@ impl Outcome<'_> {
             ("configurations", head.configurations.clone()),
             ("frame", head.frame.to_owned()),
             ("quantities", head.quantities.join(", ")),
-            ("task", head.task.join(", ")),
+            ("task", if head.task_named { head.task.join(", ") } else { String::new() }),
             ("metric", if head.metric == "unit" { "" } else { head.metric }.to_owned()),
         ];
         if let Some(written) = written {
