@@ -66,7 +66,7 @@ mod _core {
     #[pymodule_export]
     use crate::mechanism::load::{catalogue, load, parse};
     #[pymodule_export]
-    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, PyParameter};
+    use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, PyParameter, PySrdf};
     #[pymodule_export]
     use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw, PyWaypointMove};
     #[pymodule_export]

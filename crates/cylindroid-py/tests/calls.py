@@ -36,6 +36,12 @@ SLIDER = cy.parse(
     <joint name="slide" type="prismatic"><parent link="base"/><child link="cart"/>
     <axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"""
 )
+SRDF = """<robot name="panda">
+<group name="forearm"><chain base_link="link4" tip_link="link7"/></group>
+<group_state name="up" group="forearm"><joint name="panda_joint6" value="1.0"/></group_state>
+<end_effector name="grip" parent_link="link7" group="hand" parent_group="forearm"/>
+<disable_collisions link1="link1" link2="link2" reason="Adjacent"/></robot>"""
+GROUPS = cy.Srdf("panda.srdf", SRDF)
 POSE = PANDA.fk(PANDA.home)
 NEAR = PANDA.fk(PANDA.home + 0.05)
 J = PANDA.jacobian(PANDA.home + 0.1)
@@ -308,6 +314,11 @@ def calls():
          {"J": J, "task": TWIST, "max_joint_velocity": 0.5}),
         ("transversals", cy.transversals, {"lines": LINES_AS_COLUMNS, **SPACE}),
         ("velocity_conversion", cy.velocity_conversion, {"b_from_a": POSE}),
+        ("Srdf", cy.Srdf, {"path": "panda.srdf", "text": SRDF}),
+        ("Srdf.joints", GROUPS.joints, {"group": "forearm", "robot": PANDA}),
+        ("Srdf.group", GROUPS.group, {"name": "forearm", "robot": PANDA, "q": PANDA.home}),
+        ("Srdf.configuration", GROUPS.configuration,
+         {"state": "up", "robot": PANDA, "q": PANDA.home}),
         *tasks(),
         *[(f"Mechanism.{name}", getattr(robot, name), arguments)
           for name, robot, arguments in methods(grip)],
@@ -359,6 +370,8 @@ def methods(grip):
         ("integrate", PANDA, {**n, "qd": q, "dt": 0.1}),
         ("with_actuated", FIVE_BAR, {"names": ["q1"]}),
         ("with_limits", FIVE_BAR, {"limits": {"q1": {"velocity": 1.0}}}),
+        ("with_fixed_joints", PANDA, {"names": ["panda_joint3"], **n}),
+        ("with_tool", PANDA, {"frame": "link4"}),
         ("track_path", FIVE_BAR,
          {"start": FIVE_BAR.home, "goal": {"q1": 0.1}, "step": 0.1, "least_distance": 0.01}),
         ("outside_limits", PANDA, n),

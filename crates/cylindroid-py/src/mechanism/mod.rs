@@ -1,11 +1,13 @@
 //! The class `Mechanism`: a model and its kinematics.
 
+mod derived;
 mod inertia;
 mod joint;
 mod kinematics;
 mod limits;
 pub(crate) mod load;
 mod parameter;
+mod srdf;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -27,6 +29,7 @@ use crate::table::{self, Table};
 pub(crate) use joint::PyJoint;
 pub(crate) use load::PyLoadReport;
 pub(crate) use parameter::PyParameter;
+pub(crate) use srdf::PySrdf;
 
 /// A robot or mechanism (immutable); created by `load` or `parse`.
 ///
@@ -91,6 +94,12 @@ pub(crate) enum Origin {
     Actuated { of: Box<PyMechanism>, names: Vec<String> },
     /// Another mechanism, with other limits.
     Limited { of: Box<PyMechanism>, limits: Vec<(String, JointLimits)> },
+    /// Another mechanism, with some joints fixed.
+    Fixed { of: Box<PyMechanism>, names: Vec<String>, q: Vec<f64> },
+    /// Another mechanism, with another tool.
+    Tool { of: Box<PyMechanism>, frame: String },
+    /// A group of joints of another mechanism.
+    Group { of: Box<PyMechanism>, srdf: Box<PySrdf>, name: String, q: Vec<f64> },
 }
 
 /// Drives, reference, bits of the length.
@@ -325,6 +334,18 @@ impl PyMechanism {
             Origin::Limited { of, limits } => (
                 py.get_type::<Self>().getattr(intern!(py, "with_limits"))?,
                 ((**of).clone(), options::limits_dict(py, limits)?).into_bound_py_any(py)?,
+            ),
+            Origin::Fixed { of, names, q } => (
+                py.get_type::<Self>().getattr(intern!(py, "with_fixed_joints"))?,
+                ((**of).clone(), names, q).into_bound_py_any(py)?,
+            ),
+            Origin::Tool { of, frame } => (
+                py.get_type::<Self>().getattr(intern!(py, "with_tool"))?,
+                ((**of).clone(), frame).into_bound_py_any(py)?,
+            ),
+            Origin::Group { of, srdf, name, q } => (
+                py.get_type::<PySrdf>().getattr(intern!(py, "group"))?,
+                ((**srdf).clone(), name, (**of).clone(), q).into_bound_py_any(py)?,
             ),
         })
     }

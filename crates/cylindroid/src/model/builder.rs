@@ -54,7 +54,7 @@ pub struct Builder {
     pub(super) frames: Vec<(String, String, Pose)>,
     pub(super) unassembled: Vec<String>,
     home: Option<Vec<f64>>,
-    starts: BTreeMap<String, Vec<f64>>,
+    pub(super) starts: BTreeMap<String, Vec<f64>>,
     tool: Option<String>,
     reference: Option<String>,
     by_name: bool,

@@ -56,6 +56,15 @@ impl Inclusion<'_> {
     }
 }
 
+impl Mechanism {
+    /// The link that is no child: the first of the tree.
+    pub(super) fn root(&self) -> usize {
+        let mut is_child = vec![false; self.links().len()];
+        self.joints().iter().for_each(|j| is_child[j.child] = true);
+        is_child.iter().position(|child| !child).unwrap_or(0)
+    }
+}
+
 impl Builder {
     /// Adds a whole mechanism. Its root is attached to `parent` by a joint `name/base`
     /// (`parent/base` without a name), fixed or free; a number follows where the mechanism has a joint
@@ -88,9 +97,7 @@ impl Builder {
     pub fn include(&mut self, robot: &Mechanism, how: Inclusion<'_>) -> Result<&mut Self> {
         robot.check_q("start", how.start)?;
         let name = |i: usize| how.link(robot, i);
-        let mut is_child = vec![false; robot.links().len()];
-        robot.joints().iter().for_each(|j| is_child[j.child] = true);
-        let root = is_child.iter().position(|child| !child).unwrap_or(0);
+        let root = robot.root();
         for (i, link) in robot.links().iter().enumerate() {
             if name(i) != how.parent {
                 self.link(Link { name: name(i), ..link.clone() });

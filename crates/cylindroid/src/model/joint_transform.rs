@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use super::joint::JointKind;
+use super::joint::{Joint, JointKind};
 use super::mechanism::Mechanism;
 use crate::spatial::{Pose, Rotation, Vec3};
 use crate::tolerance::ZERO_AXIS;
@@ -65,20 +65,26 @@ impl JointKind {
 impl Mechanism {
     /// The pose of every link in the root, for a `q` that was checked.
     pub(crate) fn link_poses(&self, q: &[f64]) -> Vec<Pose> {
-        let joints = self.joints();
-        let values = self.mimic_values(q);
         let mut poses = vec![Pose::IDENTITY; self.links().len()];
-        for (i, joint) in joints.iter().enumerate() {
-            let motion = if joint.mimic.is_some() {
-                joint.kind.transform(joint.axis, &[values[i]])
-            } else {
-                joint.kind.transform(joint.axis, &q[joint.coordinates.clone()])
-            };
-            let motion = if joint.reversed { motion.inverse() } else { motion };
+        for (joint, motion) in self.joints().iter().zip(self.joint_motions(q)) {
             poses[joint.child] =
                 poses[joint.parent] * joint.parent_from_joint * motion * joint.joint_from_child;
         }
         poses
+    }
+
+    /// The motion of every joint of the tree from zero, in its frame, for a `q` that was checked.
+    pub(super) fn joint_motions(&self, q: &[f64]) -> Vec<Pose> {
+        let values = self.mimic_values(q);
+        let motion = |(joint, value): (&Joint, f64)| {
+            let motion = if joint.mimic.is_some() {
+                joint.kind.transform(joint.axis, &[value])
+            } else {
+                joint.kind.transform(joint.axis, &q[joint.coordinates.clone()])
+            };
+            if joint.reversed { motion.inverse() } else { motion }
+        };
+        self.joints().iter().zip(values).map(motion).collect()
     }
 
     /// The values of the mimic joints, zero for the others.

@@ -19,6 +19,7 @@ mod dimension;
 mod disabled_collisions;
 mod elasticity;
 mod elasticity_check;
+mod fixed_joints;
 mod flatten;
 pub mod formats;
 mod include;

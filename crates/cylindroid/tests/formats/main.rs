@@ -29,6 +29,7 @@ mod order;
 mod parameters;
 mod real_chains;
 mod sdf;
+mod srdf;
 mod tool;
 mod urdf;
 

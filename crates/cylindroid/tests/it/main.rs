@@ -10,6 +10,7 @@
 mod analytic;
 mod batch;
 mod closure;
+mod fixed_joints;
 mod graph;
 mod hyperbolic;
 mod ik;
