@@ -74,6 +74,8 @@ export type State = {
   servo: {
     status: ServoStatus; reason: string | null; sentence: string;
     limits: { coordinate: number; kind: string }[]; pair: [string, string] | null; self_motion: number;
+    /** Linear, angular; world axes, at the tool. */
+    twist: number[] | null;
   };
   singular: Singular | null;
   outside_limits: number[];
@@ -89,7 +91,7 @@ export type State = {
 // Overlays ----------------------------------------------------------------------------------------
 
 export type Ellipsoid = {
-  center: Vec3; axes: { vector: Vec3; size: number; cut: boolean }[]; scale: number;
+  center: Vec3; axes: { vector: Vec3; size: number }[]; scale: number;
   infinite: Vec3[]; unit: string;
 };
 export type JointAxes = {
@@ -154,6 +156,7 @@ export type ToServer = { id?: string | number } & (
   | { type: "joint"; name: string; value: number }
   | { type: "configuration"; q: number[] }
   | ({ type: "target" } & Pose)
+  | { type: "twist"; linear: Vec3; angular: Vec3 }
   | { type: "frame"; name: string }
   | { type: "task"; name: string }
   | { type: "play" | "pause" | "reset" }

@@ -87,6 +87,43 @@ test("the null-space slider moves the joints and holds the tool", () =>
     assert.equal(await slider.inputValue(), "0");
   }));
 
+test("held keys and buttons move the tool, and it brakes when they are let go", () =>
+  visit(["panda"], async (page) => {
+    const before = await state(page);
+    const pad = page.getByRole("group", { name: /^Hold to move/ });
+    await pad.focus();
+    await page.keyboard.down("PageDown");
+    await until(page, `state.tool.position[2] < ${before.tool.position[2]} - 0.02 && state.servo.twist !== null`);
+    assert.match((await state(page)).servo.sentence, /Following the commanded twist/);
+    assert.match(await pad.innerText(), /commanded .* m\/s/);
+    await page.keyboard.up("PageDown");
+    await until(page, 'state.servo.twist === null && state.servo.status === "reached"');
+    const low = await state(page);
+    assert.ok(apart(low.tool.position, low.target.position) < 1e-9, "the target is at the tool again");
+    assert.ok(apart(low.tool.position.slice(0, 2), before.tool.position.slice(0, 2)) < 1e-3);
+    await page.keyboard.down("Shift");
+    await page.keyboard.down("ArrowRight");
+    await until(page, `Math.abs(state.tool.quaternion[0] - ${low.tool.quaternion[0]}) > 0.02`);
+    await page.keyboard.up("Shift");
+    await page.keyboard.up("ArrowRight");
+    await until(page, 'state.servo.twist === null && state.servo.status === "reached"');
+    const turned = await state(page);
+    assert.ok(apart(turned.tool.position, low.tool.position) < 2e-3, "rotation leaves the tool point in place");
+    const button = page.getByRole("button", { name: "Move +y" });
+    await button.hover();
+    await page.mouse.down();
+    await until(page, `state.tool.position[1] > ${turned.tool.position[1]} + 0.02`);
+    await page.mouse.up();
+    await until(page, 'state.servo.twist === null && state.servo.status === "reached"');
+    // A lost key-up stops it as well: the page sends no more.
+    await pad.focus();
+    await page.keyboard.down("ArrowUp");
+    await until(page, "state.servo.twist !== null");
+    await page.evaluate(() => /** @type {HTMLElement} */ (document.activeElement).blur());
+    await until(page, 'state.servo.twist === null && state.servo.status === "reached"');
+    await page.keyboard.up("ArrowUp");
+  }));
+
 test("frame, task and inverse are chosen; the handle offers what the task minds", () =>
   visit(["panda"], async (page) => {
     await page.getByLabel("Frame", { exact: true }).selectOption("link5");

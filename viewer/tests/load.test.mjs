@@ -6,6 +6,7 @@ import { browserOfFile, openPanel, picture, ROBOTS, served, showOverlay, state }
 
 const { look, visit } = browserOfFile();
 
+const BROKEN = fileURLToPath(new URL("robots/broken/broken.urdf", import.meta.url));
 const SHAPES = fileURLToPath(new URL("robots/shapes/shapes.urdf", import.meta.url));
 
 /** @type {{ name: string, args: string[], dark?: boolean, show: string[] }[]} */
@@ -45,6 +46,33 @@ test("meshes of all three formats are shown; a missing one becomes rods and a se
     assert.ok((await sizes(page)).every((/** @type {number} */ height) => Math.abs(height - 0.4) < 1e-3), "all boxes are 0.4 m high, whatever their file's unit");
     await picture(page, "mesh-formats");
   }, { expect: /not_there|404/ }));
+
+test("a mesh with vertices that are not finite is skipped, and the view stays", () =>
+  visit([BROKEN], async (page) => {
+    await page.locator(".toast").waitFor();
+    assert.match(await page.locator(".toast").innerText(), /2 shapes are missing.*(nan|index)\.obj: it has vertices that are not finite/s);
+    assert.deepEqual(await emptyView(page), false, "the view shows nothing");
+  }));
+
+test("at rest an open comparison asks no more", () =>
+  visit(["ur5e"], async (page) => {
+    const panel = await openPanel(page, "compare");
+    await panel.locator("table").waitFor();
+    await page.waitForTimeout(600);
+    const asked = await page.evaluate(async () => {
+      const { session } = /** @type {any} */ (window).viewer;
+      const send = session.send.bind(session);
+      let count = 0;
+      session.send = (/** @type {any} */ message) => {
+        count += message.type === "compare" ? 1 : 0;
+        return send(message);
+      };
+      await new Promise((done) => setTimeout(done, 1500));
+      session.send = send;
+      return count;
+    });
+    assert.equal(asked, 0);
+  }));
 
 test("all panels and overlays of one arm fit together", () =>
   served(["panda"], async ({ url }) => {

@@ -4,6 +4,7 @@ import { panel } from "../panels/panel";
 import type { ChosenMethod, Method, Scene, State } from "../protocol";
 import type { Session } from "../session";
 import { TargetFields } from "./target_fields";
+import { VelocityPad } from "./velocity_pad";
 
 const TASKS: [string, string][] = [
   ["pose", "full pose"],
@@ -17,22 +18,27 @@ export class ServoControls {
   readonly panel = panel("servo", "Servo", true);
 
   private readonly target: TargetFields;
+  private readonly pad: VelocityPad;
 
   constructor(private readonly session: Session) {
     this.target = new TargetFields(session);
+    this.pad = new VelocityPad(session);
   }
 
   show(state: State): void {
     this.target.show(state);
+    this.pad.show(state);
   }
 
   build(scene: Scene): void {
     const { method } = scene;
     const chosen = scene.methods.find((other) => other.name === method.name);
     this.panel.note(method.name.replaceAll("-", " "));
+    this.pad.build(scene);
     fill(
       this.panel.body,
       this.target.element,
+      this.pad.element,
       this.choice("Frame", scene.frames.map(({ name }) => [name, name]), scene.frame, (name) => this.session.send({ type: "frame", name })),
       this.choice("Task", this.tasks(scene), scene.task.name, (name) => this.session.send({ type: "task", name })),
       this.choice(

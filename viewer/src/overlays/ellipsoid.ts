@@ -8,8 +8,6 @@ import type { Context } from "./overlay";
 
 /** Of a drawn semi-axis, over the size of the robot. */
 const LONGEST = 0.32;
-/** A semi-axis whose scale is below this share of another's looks too short next to it. */
-const SEEN = 0.99;
 
 const BALL = new SphereGeometry(1, 36, 24);
 BALL.userData["shared"] = true;
@@ -48,12 +46,11 @@ export function ellipsoid(colour: string) {
         for (const side of [1, -1]) group.add(arrow(center, way.clone().multiplyScalar(side), context.line * 0.6, drawn(colour)));
       }
     },
-    words(data: Ellipsoid): string {
-      const scales = data.axes.map((axis) => (axis.cut ? vector(axis.vector).length() / axis.size : data.scale));
-      const shorter = (i: number): boolean => (scales[i] ?? 0) < SEEN * Math.max(...scales);
-      const sizes = data.axes.map((axis, i) => short(axis.size) + (shorter(i) ? "\u00a0(shortened)" : "")).join(" · ");
+    words(data: Ellipsoid, context: Context): string {
+      const sizes = data.axes.map((axis) => short(axis.size)).join(" · ");
+      const scale = short(data.scale * fitting(data, context.size), 2);
       const free = data.infinite.length > 0 ? `${sizes ? "; " : ""}infinite along ${data.infinite.length}` : "";
-      return `${sizes}${sizes ? `\u00a0${data.unit}` : ""}${free}`;
+      return `${sizes}${sizes ? `\u00a0${data.unit}, 1\u00a0${data.unit} is ${scale}\u00a0m` : ""}${free}`;
     },
   };
 }

@@ -20,5 +20,5 @@ export type Overlay<K extends OverlayName> = {
   colour: string;
   draw: (group: Group, data: Full<K>, context: Context) => void;
   /** A short legend with the values. */
-  words: (data: Full<K>) => string;
+  words: (data: Full<K>, context: Context) => string;
 };

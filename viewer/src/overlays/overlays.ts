@@ -97,7 +97,7 @@ function drawOne<K extends OverlayName>(name: K, group: Group, context: Context)
   group.traverse((part) => {
     part.renderOrder = 2;
   });
-  return overlay.words(full);
+  return overlay.words(full, context);
 }
 
 function legendLine(info: OverlayInfo, words: string): HTMLElement {

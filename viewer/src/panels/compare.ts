@@ -19,6 +19,8 @@ export class Compare {
   private readonly result = h("div", {});
   private timer = 0;
   private asked: number | null = null;
+  /** What was asked last: an answer to the same would be the same. */
+  private question = "";
 
   constructor(private readonly session: Session, private readonly pointMoved: (point: Vec3 | null) => void) {
     for (const choice of [this.first, this.second]) choice.addEventListener("change", () => this.later());
@@ -54,6 +56,7 @@ export class Compare {
     const names = scene.methods.map((method) => method.name);
     const old = [this.first.value, this.second.value];
     [this.first, this.second].forEach((choice, i) => {
+      this.question = "";
       fill(choice, ...names.map((name) => h("option", { value: name }, name.replaceAll("-", " "))));
       const preferred = [old[i], i === 0 ? "truncated" : "hyperbolic", names[i]].find((name) => name && names.includes(name));
       choice.value = preferred ?? names[0] ?? "";
@@ -100,10 +103,14 @@ export class Compare {
     const h = this.pitch.valueAsNumber;
     const chosen = scene.methods.filter(({ name }) => name === this.first.value || name === this.second.value);
     this.pitchRow.hidden = !chosen.some((method) => method.pitch);
-    this.asked = this.session.send({
-      type: "compare", methods: [this.first.value, this.second.value], point: this.point ?? [0, 0, 0],
+    const asked = {
+      type: "compare" as const, methods: [this.first.value, this.second.value], point: this.point ?? [0, 0, 0] as Vec3,
       h: Number.isFinite(h) && !this.pitchRow.hidden ? h : null, twist: null,
-    });
+    };
+    const question = JSON.stringify([asked, state.q, state.target]);
+    if (question === this.question) return;
+    this.asked = this.session.send(asked);
+    this.question = this.asked === null ? "" : question;
   }
 
   private show(comparison: Comparison): void {

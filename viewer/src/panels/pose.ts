@@ -1,7 +1,7 @@
 /** Where the tool is, where it should be, and what the servo says. */
 import { fill, h } from "../dom";
 import { fixed, short } from "../format";
-import type { Pose, Scene, State } from "../protocol";
+import type { Pose, Quaternion, Scene, State } from "../protocol";
 import { numbers, pairs, panel, type Panel } from "./panel";
 
 const WORDS = { moving: "moving", reached: "reached", stalled: "stalled", paused: "paused", unavailable: "not available" };
@@ -37,10 +37,17 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
   };
 }
 
-function rows(field: keyof Pose, names: string[], state: State, unit: string): (string | Node)[][] {
+/** Of the two quaternions of a rotation the one nearer to another. */
+function nearer(quaternion: Quaternion, to: Quaternion): Quaternion {
+  const product = quaternion.reduce((sum, x, i) => sum + x * (to[i] ?? 0), 0);
+  return product < 0 ? (quaternion.map((x) => -x) as Quaternion) : quaternion;
+}
+
+function rows(field: keyof Pose, names: string[], { tool, target: desired }: State, unit: string): (string | Node)[][] {
+  const target = { ...desired, quaternion: nearer(desired.quaternion, tool.quaternion) };
   return names.map((name, i) => [
-    h("span", { "data-pose": name, "data-value": state.tool[field][i] ?? "" }, name, unit && h("span", { class: "unit" }, ` ${unit}`)),
-    fixed(state.tool[field][i], 5),
-    fixed(state.target[field][i], 5),
+    h("span", { "data-pose": name, "data-value": tool[field][i] ?? "" }, name, unit && h("span", { class: "unit" }, ` ${unit}`)),
+    fixed(tool[field][i], 5),
+    fixed(target[field][i], 5),
   ]);
 }

@@ -26,7 +26,7 @@ export function singularPanel(): Panel & { show: (scene: Scene, state: State) =>
         bars(singular, Math.max(made.body.clientWidth - 28, 180)),
         pairs(
           ["rank", String(singular.rank)],
-          ["gap (smallest kept / largest lost)", singular.gap === null ? "none lost" : short(singular.gap)],
+          ["gap (smallest kept / largest lost)", singular.gap !== null ? short(singular.gap) : singular.rank < singular.values.length ? "∞" : "none lost"],
           ["smallest / largest", short(singular.ratio)],
           ["threshold", short(singular.threshold)],
         ),

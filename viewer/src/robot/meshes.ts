@@ -89,7 +89,7 @@ async function mesh(visual: MeshVisual): Promise<Object3D> {
   const key = `${url} ${visual.format === "dae" ? "" : JSON.stringify(visual.rgba)}`;
   let waiting = loaded.get(key);
   if (!waiting) {
-    waiting = read(url, visual);
+    waiting = read(url, visual).then(finite);
     loaded.set(key, waiting);
     waiting.catch(() => loaded.delete(key));
   }
@@ -98,6 +98,19 @@ async function mesh(visual: MeshVisual): Promise<Object3D> {
   } catch (error) {
     throw new Error(`${visual.uri}: ${error instanceof Error ? error.message : "cannot be read"}`);
   }
+}
+
+/** Rejects a body with vertices that no view could contain, or without any. */
+function finite(body: Object3D): Object3D {
+  let count = 0;
+  body.traverse((part) => {
+    if (!(part instanceof Mesh)) return;
+    const { array } = (part.geometry as BufferGeometry).getAttribute("position");
+    count += array.length;
+    for (const x of array) if (!Number.isFinite(x)) throw new Error("it has vertices that are not finite");
+  });
+  if (count === 0) throw new Error("it has no vertices");
+  return body;
 }
 
 async function read(url: string, visual: MeshVisual): Promise<Object3D> {

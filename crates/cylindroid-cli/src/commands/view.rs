@@ -44,7 +44,13 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
         }
         out.flush()?;
         if !page {
-            note();
+            note(NOT_BUILT);
+        }
+        if let Some(url) = server.url_for_others() {
+            note(&format!(
+                "everyone who reaches this machine can open {url}, and the meshes and images in the \
+                 folders of the model; without --host only this machine can"
+            ));
         }
         if !args.check {
             server.serve().await?;
@@ -56,12 +62,12 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
     Ok(ExitCode::SUCCESS)
 }
 
+const NOT_BUILT: &str = "the page is not built, only the protocol is served; run `cargo xtask \
+                         viewer` in the source of cylindroid (it needs Node.js), then build it again";
+
 #[allow(clippy::print_stderr)] // it is no output
-fn note() {
-    eprintln!(
-        "note: the page is not built, only the protocol is served; run `cargo xtask viewer` in the \
-         source of cylindroid (it needs Node.js), then build it again"
-    );
+fn note(what: &str) {
+    eprintln!("note: {what}");
 }
 
 fn start(args: &ViewArgs) -> Result<Start> {

@@ -111,7 +111,12 @@ impl Folders {
     pub(super) fn file(&self, folder: usize, path: &str) -> Option<PathBuf> {
         let folder = self.open.get(folder)?;
         let relative = Path::new(path);
-        let plain = relative.components().all(|c| matches!(c, Component::Normal(_)));
+        // Hidden files and folders are nobody's meshes.
+        let is_plain = |c: Component<'_>| match c {
+            Component::Normal(name) => !name.as_encoded_bytes().starts_with(b"."),
+            _ => false,
+        };
+        let plain = relative.components().all(is_plain);
         if !plain || path.contains(['\\', '\0']) || !is_given_out(relative) {
             return None;
         }
@@ -163,7 +168,15 @@ mod tests {
         let all = tempfile::tempdir().unwrap();
         let folder = all.path().join("robot");
         fs::create_dir_all(folder.join("meshes")).unwrap();
-        for name in ["robot/meshes/a b.stl", "robot/meshes/t.PNG", "robot/key.pem", "out.stl"] {
+        fs::create_dir_all(folder.join(".git")).unwrap();
+        for name in [
+            "robot/meshes/a b.stl",
+            "robot/meshes/t.PNG",
+            "robot/key.pem",
+            "out.stl",
+            "robot/.git/a.png",
+            "robot/meshes/.hidden.png",
+        ] {
             fs::write(all.path().join(name), name).unwrap();
         }
         let folder = folder.canonicalize().unwrap();
@@ -178,6 +191,8 @@ mod tests {
             "",
             "./meshes/a b.stl",
             "meshes/none.stl",
+            ".git/a.png",
+            "meshes/.hidden.png",
             "meshes\\..\\..\\out.stl",
             "meshes/a b.stl\0",
         ] {

@@ -5,7 +5,7 @@ use cylindroid::control::{
     CollisionAvoidance, LimitKind, MotionTask, SecondaryTask, Stall, Status, StoppedBy,
     TaskObjective, TaskServo, TaskServoOptions,
 };
-use cylindroid::{Mechanism, Pose, Result, Servo, ServoOptions};
+use cylindroid::{Mechanism, Pose, Result, Servo, ServoOptions, Twist};
 
 /// Distances that are kept where none are given (m).
 pub(super) const GAP: f64 = 0.01;
@@ -15,6 +15,9 @@ pub(super) const MARGIN: f64 = 0.3;
 const WINDOW: f64 = 1.0;
 /// Smallest share by which an error must fall to count as progress.
 const SHARE: f64 = 1e-3;
+
+/// Slower joints stand [rad/s or m/s].
+const AT_REST: f64 = 1e-4;
 
 /// Names of the tasks.
 const TOOL: &str = "tool";
@@ -132,13 +135,7 @@ impl Avoidance {
         if let TaskObjective::Frame { target: of, .. } = self.servo.objective_mut(TOOL)? {
             *of = target.into();
         }
-        let share = self.lowest;
-        if let TaskObjective::JointVelocities { velocities } =
-            self.servo.objective_mut(SELF_MOTION)?
-        {
-            velocities.fill(0.0);
-            velocities.iter_mut().zip(self_motion).for_each(|(v, own)| *v = share * own);
-        }
+        self.set_self_motion(self_motion)?;
         self.servo.step(q)?;
         let report = self.servo.reports()[0];
         let error = report.position_error + report.orientation_error;
@@ -168,5 +165,51 @@ impl Avoidance {
         }
         self.servo.advance(q);
         Ok(LastStep { status, stall, pair })
+    }
+
+    /// One step along a twist (world axes, at the tool), without a target; moves `q`.
+    ///
+    /// # Errors
+    /// As [`TaskServo::step`].
+    pub(super) fn follow(&mut self, q: &mut [f64], twist: Twist) -> Result<LastStep> {
+        let mut tool = None;
+        if let TaskObjective::Frame { target, end_effector, .. } = self.servo.objective_mut(TOOL)? {
+            tool = Some(*end_effector);
+            target.feed_forward = twist;
+        }
+        // From where the tool is.
+        if let Some(tool) = tool {
+            let pose = self.servo.mechanism().state(q)?.pose(tool);
+            if let TaskObjective::Frame { target, .. } = self.servo.objective_mut(TOOL)? {
+                target.pose = pose;
+            }
+        }
+        self.set_self_motion(&[])?;
+        self.servo.step(q)?;
+        let stopped_by = self.servo.reports()[0].stopped_by;
+        let mut last = LastStep { status: Status::Moving, stall: None, pair: None };
+        if let (Some(StoppedBy::Distance { pair }), Some(model)) =
+            (stopped_by, self.servo.collision_model())
+        {
+            last.pair = Some(model.names(pair).map(str::to_owned));
+            if self.servo.joint_velocities().iter().all(|rate| rate.abs() < AT_REST) {
+                last.status = Status::Stalled;
+            }
+        }
+        self.servo.advance(q);
+        // The next target begins anew.
+        self.renew();
+        Ok(last)
+    }
+
+    fn set_self_motion(&mut self, rates: &[f64]) -> Result<()> {
+        let share = self.lowest;
+        if let TaskObjective::JointVelocities { velocities } =
+            self.servo.objective_mut(SELF_MOTION)?
+        {
+            velocities.fill(0.0);
+            velocities.iter_mut().zip(rates).for_each(|(v, own)| *v = share * own);
+        }
+        Ok(())
     }
 }

@@ -1,12 +1,12 @@
 //! Dispatches each client message to its session and returns the answer.
 
-use cylindroid::{Error, Result};
+use cylindroid::{Error, Result, Twist, Vec3};
 use serde_json::Value;
 
 use super::avoidance::{GAP, MARGIN};
 use super::compare::compare;
 use super::inverse_parameters::invert_by;
-use super::messages::{Complaint, Message, Request, TargetPose};
+use super::messages::{Complaint, Message, Request, TargetPose, TwistCommand};
 use super::names::Overlay;
 use super::obstacle_messages::{AddObstacle, AvoidCollisions, MoveObstacle};
 use super::reaching::{Reached, assembled, reach};
@@ -63,6 +63,10 @@ fn obey(
             q.and_then(|q| session.stand(&q)).map_err(at("configuration.q"))?;
         }
         Message::Target(target) => session.aim(&target)?,
+        Message::Twist(TwistCommand { linear, angular }) => {
+            let (linear, angular) = (Vec3::from_array(linear), Vec3::from_array(angular));
+            session.follow(Twist { linear, angular })?;
+        }
         Message::Frame(frame) => {
             let found = session.mechanism().frame(&frame.name);
             found.and_then(|f| session.choose_frame(f)).map_err(at("frame.name"))?;

@@ -26,6 +26,7 @@ pub(super) enum Message {
     Joint(Joint),
     Configuration(Configuration),
     Target(TargetPose),
+    Twist(TwistCommand),
     Frame(Name),
     Task(Name),
     Play(Nothing),
@@ -45,10 +46,11 @@ pub(super) enum Message {
     Seen(Seen),
 }
 
-const TYPES: [&str; 20] = [
+const TYPES: [&str; 21] = [
     "joint",
     "configuration",
     "target",
+    "twist",
     "frame",
     "task",
     "play",
@@ -103,6 +105,14 @@ pub(super) struct TargetPose {
     pub(super) position: [f64; 3],
     /// w, x, y, z.
     pub(super) quaternion: [f64; 4],
+}
+
+/// World axes, at the tool.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TwistCommand {
+    pub(super) linear: [f64; 3],
+    pub(super) angular: [f64; 3],
 }
 
 #[derive(Debug, Deserialize)]

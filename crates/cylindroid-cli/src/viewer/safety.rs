@@ -3,7 +3,7 @@
 //! A foreign page cannot forge `Host` and `Origin`. `Host` is a foreign name after DNS rebinding,
 //! `Origin` is foreign for cross-origin requests.
 
-use std::net::{IpAddr, SocketAddr};
+use std::net::{IpAddr, SocketAddr, UdpSocket};
 
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
@@ -33,6 +33,26 @@ impl Names {
             _ => self.host.clone(),
         };
         format!("http://{host}:{}/", self.address.port())
+    }
+
+    /// The URL for other machines, if the server listens to them.
+    pub(super) fn url_for_others(&self) -> Option<String> {
+        let bound = self.address.ip();
+        if bound.is_loopback() {
+            return None;
+        }
+        if !bound.is_unspecified() {
+            return Some(self.url());
+        }
+        // The address from which this machine would answer; nothing is sent.
+        let any = SocketAddr::new(bound, 0);
+        let elsewhere = if bound.is_ipv6() { "[2001:db8::1]:9" } else { "192.0.2.1:9" };
+        let own = UdpSocket::bind(any).and_then(|socket| {
+            socket.connect(elsewhere)?;
+            socket.local_addr()
+        });
+        let host = own.map_or(bound, |own| own.ip());
+        Some(format!("http://{}/", SocketAddr::new(host, self.address.port())))
     }
 
     /// True for `host` or `host:port` of this server.
@@ -114,8 +134,7 @@ fn has_foreign_form(uri: &Uri) -> bool {
 /// Only resources of this server, and those created by the page (textures of meshes).
 fn policy(host: &str) -> String {
     format!(
-        "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' \
-         data: blob:; connect-src 'self' blob: ws://{host}; worker-src 'self' blob:; object-src \
+        "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self' blob: ws://{host}; worker-src 'self' blob:; object-src \
          'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     )
 }
@@ -154,6 +173,10 @@ mod tests {
         let named = names("robot.lab", "192.168.1.5:9");
         assert!(named.knows("robot.lab:9") && !named.knows("localhost:9"));
         assert_eq!(names("::1", "[::1]:7").url(), "http://[::1]:7/");
+        assert_eq!(own.url_for_others(), None);
+        assert_eq!(named.url_for_others().as_deref(), Some("http://robot.lab:9/"));
+        let url = all.url_for_others().unwrap();
+        assert!(url.starts_with("http://") && url.ends_with(":80/"), "{url}");
     }
 
     #[test]

@@ -10,9 +10,10 @@ use axum::extract::{Path, State};
 use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use axum::serve::ListenerExt;
 use axum::{Router, middleware};
 use cylindroid::model::read_regular_file;
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpStream};
 
 use super::assets::{Page, page_is_built};
 use super::safety::{Names, guard};
@@ -77,6 +78,11 @@ impl Server {
         self.names.url()
     }
 
+    /// The URL for other machines, if the server listens to them.
+    pub(crate) fn url_for_others(&self) -> Option<String> {
+        self.names.url_for_others()
+    }
+
     /// Serves until ctrl-c.
     pub(crate) async fn serve(self) -> io::Result<()> {
         let router = Router::new()
@@ -86,10 +92,15 @@ impl Server {
             .with_state(self.shared)
             .layer(middleware::from_fn_with_state(self.names, guard));
         tokio::select! {
-            ended = axum::serve(self.listener, router) => ended,
+            ended = axum::serve(self.listener.tap_io(without_delay), router) => ended,
             stopped = tokio::signal::ctrl_c() => stopped,
         }
     }
+}
+
+/// Small messages leave at once; a client that is gone shows when it is written to.
+fn without_delay(stream: &mut TcpStream) {
+    let _ = stream.set_nodelay(true);
 }
 
 async fn session(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Response {

@@ -3,6 +3,7 @@
 //! Independent of sockets and real time: messages change it, and steps move it.
 
 mod collisions;
+mod velocity_mode;
 
 use std::sync::Arc;
 
@@ -21,6 +22,7 @@ use super::inverse_parameters::Chosen;
 use super::messages::{Complaint, NullSpace, TargetPose};
 use super::names::Overlay;
 use super::start::Start;
+use velocity_mode::Driven;
 
 /// Servo steps per second of its clock.
 pub(super) const STEPS: u32 = 120;
@@ -45,6 +47,8 @@ pub(super) struct Session {
     is_resting: bool,
     last: Option<LastStep>,
     self_motion: Option<SelfMotion>,
+    /// In velocity mode.
+    driven: Option<Driven>,
     overlays: Vec<Overlay>,
     bodies: Bodies,
     /// Least distance and margin (m), if collisions are avoided, and the servo that does, or the
@@ -71,6 +75,7 @@ impl Session {
         let mut options = ServoOptions::new(&mechanism);
         options.end_effector = start.end_effector;
         options.dt = 1.0 / f64::from(STEPS);
+        options.command_timeout = velocity_mode::COMMAND_TIMEOUT;
         options.secondary = options.default_secondary(&mechanism)?;
         let state = mechanism.state(&start.q)?;
         let method = Chosen::plain(options.method);
@@ -84,6 +89,7 @@ impl Session {
             is_resting: true,
             last: None,
             self_motion: None,
+            driven: None,
             overlays: Vec::new(),
             bodies: Bodies::new(&start),
             avoidance: None,
@@ -204,17 +210,24 @@ impl Session {
     pub(super) fn advance(&mut self, steps: u64) -> bool {
         let before = self.state.q().to_vec();
         let first = self.last.is_none();
+        let is_driven = self.driven.is_some();
         let mut q = before.clone();
         let mut moved = Ok(());
         for _ in 0..steps {
             if !self.is_moving() || moved.is_err() {
                 break;
             }
-            moved = self.step(&mut q);
+            moved = match self.driven {
+                Some(_) => self.step_driven(&mut q),
+                None => self.step(&mut q),
+            };
         }
         // Non-finite configurations are rejected.
         if let Err(error) = moved.and_then(|()| self.state.set(&q)) {
             (self.trouble, self.is_resting) = (Some(error), true);
+        }
+        if is_driven {
+            self.target = self.state.pose(self.options.end_effector);
         }
         self.state.q() != before || self.is_resting || first
     }
@@ -257,6 +270,7 @@ impl Session {
 
     /// Sets the velocities of the servo to zero.
     fn rest(&mut self) {
+        self.driven = None;
         if let Ok(servo) = &mut self.servo {
             servo.reset();
         }
@@ -332,6 +346,7 @@ impl Session {
     pub(super) fn aim(&mut self, desired: &TargetPose) -> std::result::Result<(), Complaint> {
         self.target = desired.pose("target")?;
         // Velocities are kept, so that a dragged target is followed smoothly.
+        self.driven = None;
         (self.last, self.trouble) = (None, None);
         self.is_resting = false;
         Ok(())

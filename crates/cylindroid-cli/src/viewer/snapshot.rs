@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use cylindroid::closure::LoopClosureError;
 use cylindroid::control::Status;
-use cylindroid::{Pose, Result};
+use cylindroid::{Pose, Result, Twist};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -52,6 +52,8 @@ struct ServoJson {
     limits: Vec<LimitJson>,
     pair: Option<[String; 2]>,
     self_motion: f64,
+    /// Linear, angular; world axes, at the tool.
+    twist: Option<[f64; 6]>,
 }
 
 #[derive(Debug, Serialize)]
@@ -161,6 +163,7 @@ fn servo(session: &Session) -> ServoJson {
         limits: limits(session),
         pair: last.and_then(|last| last.pair.clone()),
         self_motion: session.self_motion(),
+        twist: session.twist().map(Twist::to_array),
     };
     if let Some(fault) = session.fault() {
         return told("unavailable", None, fault.to_string());
@@ -168,10 +171,15 @@ fn servo(session: &Session) -> ServoJson {
     if !session.is_playing() {
         return told("paused", None, "The servo is paused.".to_owned());
     }
+    let moving = match session.twist() {
+        Some(Twist::ZERO) => "Braking.",
+        Some(_) => "Following the commanded twist.",
+        None => "Moving to the target.",
+    };
     let Some(last) = last else {
         return match session.is_resting() {
             true => told("reached", None, "The target is at the tool.".to_owned()),
-            false => told("moving", None, "Moving to the target.".to_owned()),
+            false => told("moving", None, moving.to_owned()),
         };
     };
     match (last.status, &last.pair, &last.stall) {
@@ -186,11 +194,13 @@ fn servo(session: &Session) -> ServoJson {
             told("stalled", Some(stall.name()), why)
         }
         (_, Some([a, b]), _) => {
-            let why =
-                format!("Moving to the target; the distance of {a} and {b} slows the motion.");
+            let why = format!(
+                "{}; the distance of {a} and {b} slows the motion.",
+                moving.trim_end_matches('.')
+            );
             told("moving", None, why)
         }
-        _ => told("moving", None, "Moving to the target.".to_owned()),
+        _ => told("moving", None, moving.to_owned()),
     }
 }
 

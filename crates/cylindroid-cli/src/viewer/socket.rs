@@ -104,8 +104,17 @@ impl Client {
         let mut clock: Interval = interval(Duration::from_secs(1) / RATE);
         clock.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut silent = tokio::time::Instant::now() + SILENCE;
+        let turn = Duration::from_secs(1) / RATE;
+        let mut shown = tokio::time::Instant::now() - turn;
         loop {
             let is_live = self.session.is_moving() || self.is_dirty;
+            // After a pause the first state goes out at once.
+            if is_live && shown.elapsed() >= turn {
+                shown = tokio::time::Instant::now();
+                clock.reset();
+                self.turn();
+                continue;
+            }
             let done = tokio::select! {
                 frame = stream.next() => match frame {
                     Some(Ok(frame)) => {
@@ -119,6 +128,7 @@ impl Client {
                     None => return,
                 },
                 _ = clock.tick(), if is_live => {
+                    shown = tokio::time::Instant::now();
                     self.turn();
                     Ok(())
                 }

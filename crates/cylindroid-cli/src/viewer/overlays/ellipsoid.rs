@@ -19,7 +19,7 @@ pub(super) enum Ellipsoid {
 pub(in super::super) struct EllipsoidJson {
     center: [f64; 3],
     axes: Vec<SemiAxisJson>,
-    /// [m of drawing per unit]
+    /// Of all semi-axes alike [m of drawing per unit].
     scale: f64,
     infinite: Vec<[f64; 3]>,
     unit: &'static str,
@@ -29,7 +29,6 @@ pub(in super::super) struct EllipsoidJson {
 struct SemiAxisJson {
     vector: [f64; 3],
     size: f64,
-    cut: bool,
 }
 
 /// The ellipsoid of velocities or forces for inputs of norm one, in the unit metrics of
@@ -64,17 +63,13 @@ pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Option<Ell
     };
     let reach = mechanism.reach();
     let sliding = chain.units.actuated.iter().all(|u| *u == Unit::Length);
-    let scale = SHARE * reach / usual(kind, sliding, reach);
     let semi_axes = spectrum.semi_axes();
-    let axes: Vec<SemiAxisJson> = (0..semi_axes.cols())
-        .map(|j| {
-            let axis = vector(semi_axes.column(j));
-            let size = axis.norm();
-            let cut = size * scale > LARGEST * reach;
-            let length = if cut { LARGEST * reach / size } else { scale };
-            SemiAxisJson { vector: (axis * length).to_array(), size, cut }
-        })
-        .collect();
+    let semi_axes: Vec<Vec3> = (0..semi_axes.cols()).map(|j| vector(semi_axes.column(j))).collect();
+    let largest = semi_axes.iter().map(|axis| axis.norm()).fold(0.0, f64::max);
+    let scale = (SHARE * reach / usual(kind, sliding, reach)).min(LARGEST * reach / largest);
+    let drawn =
+        |axis: &Vec3| SemiAxisJson { vector: (*axis * scale).to_array(), size: axis.norm() };
+    let axes: Vec<SemiAxisJson> = semi_axes.iter().map(drawn).collect();
     let infinite: Vec<[f64; 3]> = (0..spectrum.infinite.cols())
         .filter_map(|j| vector(spectrum.infinite.column(j)).unit(0.0))
         .map(Vec3::to_array)

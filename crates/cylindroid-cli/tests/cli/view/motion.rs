@@ -1,6 +1,6 @@
 //! Joints, targets and self-motions.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::{Server, configuration};
 use crate::{difference, numbers};
@@ -106,6 +106,65 @@ fn a_self_motion_leaves_the_tool_where_it_is() {
             .contains("-1 to 1")
     );
     assert_eq!(client.done(json!({"type": "null_space", "rate": 0}))["servo"]["self_motion"], 0.0);
+}
+
+/// The tool follows a twist while commands arrive, brakes without them, and rests with the target at
+/// the tool; with avoided collisions, and of a closed chain, as well.
+#[test]
+fn a_twist_is_followed_until_commands_end() {
+    for arguments in [&["panda"][..], &["panda", "--avoid"], &["five-bar"]] {
+        let server = Server::new(arguments);
+        let mut client = server.client();
+        let home = client.next("state");
+        assert_eq!(home["servo"]["twist"], Value::Null);
+        let from = numbers(&home["tool"]["position"]);
+        let up = json!({"type": "twist", "linear": [0, 0.05, 0], "angular": [0, 0, 0]});
+        let mut state = client.done(up.clone());
+        let begin = state["time"].as_f64().unwrap();
+        while state["time"].as_f64() < Some(begin + 0.6) {
+            state = client.done(up.clone());
+        }
+        assert_eq!(state["servo"]["status"], "moving", "{state}");
+        assert_eq!(state["servo"]["sentence"], "Following the commanded twist.");
+        assert_eq!(numbers(&state["servo"]["twist"]), [0.0, 0.05, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(state["tool"], state["target"]);
+        // No command comes any more.
+        let last = client.ended();
+        assert_eq!(
+            (&last["servo"]["status"], &last["servo"]["twist"]),
+            (&json!("reached"), &Value::Null)
+        );
+        assert_eq!(last["tool"], last["target"]);
+        let to = numbers(&last["tool"]["position"]);
+        let passed = last["time"].as_f64().unwrap() - begin;
+        let way = to[1] - from[1];
+        assert!(way > 0.02 && way < 0.05 * (passed + 0.1), "{way} m in {passed} s");
+        assert!((to[0] - from[0]).abs() < 2e-3 && (to[2] - from[2]).abs() < 2e-3, "{last}");
+        let turned = |state: &Value| numbers(&state["tool"]["quaternion"]);
+        // Both signs are the same rotation.
+        let cosine: f64 = turned(&last).iter().zip(turned(&home)).map(|(a, b)| a * b).sum();
+        assert!(1.0 - cosine.abs() < 1e-6, "{arguments:?}: {cosine}");
+        // A target ends it.
+        client.done(up);
+        let back = json!({"type": "target", "position": from, "quaternion": turned(&home)});
+        client.done(back);
+        let there = client.ended();
+        assert!(there["error"]["position"].as_f64() < Some(1e-3), "{there}");
+        assert_eq!(there["servo"]["twist"], Value::Null);
+    }
+}
+
+#[test]
+fn a_paused_servo_refuses_a_twist() {
+    let server = Server::new(&["panda"]);
+    let mut client = server.client();
+    client.done(json!({"type": "pause"}));
+    let twist = json!({"type": "twist", "linear": [0, 0, 0.05], "angular": [0, 0, 0]});
+    let refused = client.complaint(&twist);
+    assert!(refused["message"].as_str().unwrap().contains("paused; send play"), "{refused}");
+    client.done(json!({"type": "play"}));
+    let short = json!({"type": "twist", "linear": [0, 0], "angular": [0, 0, 0]});
+    assert_eq!(client.complaint(&short)["place"], "twist.linear");
 }
 
 #[test]
