@@ -3,6 +3,7 @@
 //! Independent of sockets and real time: messages change it, and steps move it.
 
 mod collisions;
+mod twist_command;
 mod velocity_mode;
 
 use std::sync::Arc;
@@ -22,7 +23,7 @@ use super::inverse_parameters::Chosen;
 use super::messages::{Complaint, NullSpace, TargetPose};
 use super::names::Overlay;
 use super::start::Start;
-use velocity_mode::Driven;
+use twist_command::Driven;
 
 /// Servo steps per second of its clock.
 pub(super) const STEPS: u32 = 120;
@@ -75,7 +76,7 @@ impl Session {
         let mut options = ServoOptions::new(&mechanism);
         options.end_effector = start.end_effector;
         options.dt = 1.0 / f64::from(STEPS);
-        options.command_timeout = velocity_mode::COMMAND_TIMEOUT;
+        options.command_timeout = twist_command::COMMAND_TIMEOUT;
         options.secondary = options.default_secondary(&mechanism)?;
         let state = mechanism.state(&start.q)?;
         let method = Chosen::plain(options.method);

@@ -99,7 +99,7 @@ pub(crate) enum Origin {
     /// Another mechanism, with another tool.
     Tool { of: Box<PyMechanism>, frame: String },
     /// A group of joints of another mechanism.
-    Group { of: Box<PyMechanism>, srdf: Box<PySrdf>, name: String, q: Vec<f64> },
+    Group { of: Box<PyMechanism>, srdf: (PathBuf, Option<String>), name: String, q: Vec<f64> },
 }
 
 /// Drives, reference, bits of the length.
@@ -344,8 +344,11 @@ impl PyMechanism {
                 ((**of).clone(), frame).into_bound_py_any(py)?,
             ),
             Origin::Group { of, srdf, name, q } => (
-                py.get_type::<PySrdf>().getattr(intern!(py, "group"))?,
-                ((**srdf).clone(), name, (**of).clone(), q).into_bound_py_any(py)?,
+                package
+                    .getattr(intern!(py, "Srdf"))?
+                    .call1((srdf.0.as_os_str(), &srdf.1))?
+                    .getattr(intern!(py, "group"))?,
+                (name, (**of).clone(), q).into_bound_py_any(py)?,
             ),
         })
     }

@@ -149,7 +149,7 @@ impl PySrdf {
         let robot = robot.get();
         let q = robot.or_home("q", q.as_ref())?.to_vec();
         let inner = self.inner.group(&name, &robot.inner, &q)?;
-        let (srdf, of) = (Box::new(self.clone()), Box::new(robot.clone()));
+        let (srdf, of) = ((self.path.clone(), self.text.clone()), Box::new(robot.clone()));
         Ok(PyMechanism::new(inner, Origin::Group { of, srdf, name, q }))
     }
 

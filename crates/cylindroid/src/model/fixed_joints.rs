@@ -1,4 +1,4 @@
-//! A mechanism with some of its joints fixed: the reduced model of a group of joints.
+//! A mechanism with some of its joints fixed: the reduced model of a group of joints, and its tool.
 //!
 //! Formula  parent_from_joint' = parent_from_joint transform(q), see `joint_transform.rs`
 //! Why so   a copy through the builder, with the joints folded away, so that everything downstream
@@ -6,11 +6,14 @@
 //! Source   `buildReducedModel` of Pinocchio
 //! Checked  tests/it/fixed_joints.rs
 
+use std::sync::Arc;
+
 use super::builder::Builder;
 use super::elasticity::ElasticKind;
 use super::include::Inclusion;
 use super::joint::JointKind;
 use super::mechanism::Mechanism;
+use super::tool_choice::ToolChoice;
 use crate::error::{Error, Result};
 use crate::spatial::Pose;
 
@@ -69,6 +72,26 @@ impl Mechanism {
             _ => true,
         });
         builder.build()
+    }
+
+    /// The same mechanism with this frame as the tool, and as the reference if the tool was it.
+    ///
+    /// ```
+    /// let panda = cylindroid::load("panda")?.with_tool("link4")?;
+    /// assert_eq!(panda.frame_of(panda.tool()).name, "link4");
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::UnknownName`](crate::Error::UnknownName) with the nearest names.
+    pub fn with_tool(&self, frame: &str) -> Result<Self> {
+        let tool = self.frame(frame)?;
+        let mut data = (*self.data).clone();
+        if data.reference == data.tool {
+            data.reference = tool;
+        }
+        (data.tool, data.tool_choice) = (tool, ToolChoice::Named);
+        Ok(Self { data: Arc::new(data) }.measured())
     }
 
     /// The index of a joint of this name that can be fixed.

@@ -3,10 +3,6 @@
 //! Checked  tests/formats/tool.rs
 
 use std::fmt;
-use std::sync::Arc;
-
-use super::mechanism::Mechanism;
-use crate::error::Result;
 
 /// The reason why a frame is the tool of a mechanism.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,27 +28,5 @@ impl fmt::Display for ToolChoice {
             Self::OnlyChain(n) => write!(f, "end of the only chain, {n} {}", joints(n)),
             Self::LongestChain(n) => write!(f, "end of the longest chain, {n} {}", joints(n)),
         }
-    }
-}
-
-impl Mechanism {
-    /// The same mechanism with this frame as the tool, and as the reference if the tool was it.
-    ///
-    /// ```
-    /// let panda = cylindroid::load("panda")?.with_tool("link4")?;
-    /// assert_eq!(panda.frame_of(panda.tool()).name, "link4");
-    /// # Ok::<(), cylindroid::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error::UnknownName`](crate::Error::UnknownName) with the nearest names.
-    pub fn with_tool(&self, frame: &str) -> Result<Self> {
-        let tool = self.frame(frame)?;
-        let mut data = (*self.data).clone();
-        if data.reference == data.tool {
-            data.reference = tool;
-        }
-        (data.tool, data.tool_choice) = (tool, ToolChoice::Named);
-        Ok(Self { data: Arc::new(data) }.measured())
     }
 }

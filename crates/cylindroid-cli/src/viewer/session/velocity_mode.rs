@@ -5,20 +5,8 @@ use cylindroid::{Error, Result, Twist};
 
 use super::super::avoidance::LastStep;
 use super::super::messages::Complaint;
+use super::twist_command::Driven;
 use super::{REST, Session};
-
-/// A command holds this long (s): pages on slow networks send some twenty a second.
-pub(super) const COMMAND_TIMEOUT: f64 = 0.25;
-
-/// The command that is followed.
-#[derive(Debug)]
-pub(super) struct Driven {
-    twist: Twist,
-    /// True until a step has seen it.
-    is_new: bool,
-    /// Time since it came (s).
-    age: f64,
-}
 
 impl Session {
     /// The twist that is followed, world axes, at the tool; zero while the servo brakes.
@@ -78,11 +66,5 @@ impl Session {
             (Ok(servo), _) => servo.joint_velocities(),
             _ => &[],
         }
-    }
-}
-
-impl Driven {
-    fn desired(&self) -> Twist {
-        if self.age < COMMAND_TIMEOUT { self.twist } else { Twist::ZERO }
     }
 }
