@@ -43,7 +43,9 @@ export class VelocityPad {
     );
     this.element.addEventListener("keydown", (event) => this.press(event));
     this.element.addEventListener("keyup", (event) => this.lift(event.key));
-    this.element.addEventListener("focusout", () => this.release());
+    this.element.addEventListener("focusout", ({ relatedTarget }) => {
+      if (!(relatedTarget instanceof Node && this.element.contains(relatedTarget))) this.release();
+    });
     addEventListener("blur", () => this.release());
     session.on("link", () => this.release());
   }
