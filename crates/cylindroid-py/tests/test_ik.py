@@ -243,6 +243,30 @@ def test_what_cannot_be_reached():
     assert r.ik_all(far, iterations=100).shape == (0, 7)
 
 
+def test_working_modes_of_closed_chains():
+    m = cy.load("five-bar")
+    target = np.eye(4)
+    target[:2, 3] = 1.0, 1.5
+    modes = m.ik_all(target, task="x,y")
+    assert modes.shape == (4, 4)
+    for q in modes:
+        assert np.abs(m.fk(q, "coupler")[:2, 3] - m.fk(modes[0], "coupler")[:2, 3]).max() < 2.1
+        assert m.assemble(q).closed
+    targets = np.array([target, target])
+    targets[1, 1, 3] = 9.0
+    found = m.ik(targets, task="x,y")
+    assert list(found.success) == [True, False] and found.reason[0] is None
+    assert "not proven" in found.reason[1]
+    nearest = m.ik(target, task="x,y", q0=modes[2] + 0.01, nearest=True)
+    assert np.abs(nearest.q - modes[2]).max() < 1e-6
+    legs = cy.load("stewart")
+    start = legs.ik(legs.fk(legs.home, "platform"), frame="platform")
+    assert start.success and np.abs(start.q).max() < 1e-9
+    bodies = cy.CollisionAvoidance(cy.CollisionModel(m), gap=0.01)
+    with pytest.raises(cy.InvalidOptionError):
+        m.ik(target, task="x,y", collisions=bodies)
+
+
 def test_input_is_checked():
     r = cy.load("panda")
     T = r.fk(r.home)
@@ -255,7 +279,7 @@ def test_input_is_checked():
         (lambda: r.ik(T, q0=[1.0]), cy.DimensionError),
         (lambda: r.ik(np.array([T, T]), q0=np.zeros((3, 7))), cy.InvalidOptionError),
         (lambda: r.ik(T, tolerance_position=-1), cy.InvalidOptionError),
-        (lambda: cy.load("stewart").ik(T), cy.ModelError),
+        (lambda: cy.load("stewart").ik({"platform": T, "rod1": T}), cy.InvalidOptionError),
     ]:
         with pytest.raises(kind):
             call()

@@ -19,6 +19,10 @@ printed with the reason: the target is farther away than the arm is long (which 
 is none), bodies are too close in every solution found, a solution exists outside half-spaces \
 or outside the position limits, or none of these.
 
+For a closed chain the loops are closed together with the target, from --q and then from random \
+configurations: one frame, by default the reference, of whose orientation all, two or no components \
+are given. --all returns its working modes.
+
 With --task FRAME=X,Y,Z several frames are brought to their targets at once; --tasks reads \
 further goals from a file: frames seen from others, the centre of mass, gaze, half-spaces that are \
 not left, a posture. With --avoid or --obstacle links keep a distance from each other and from \
@@ -32,6 +36,7 @@ Examples:
   cylindroid ik ur5e --to 0.3,0.4,0.5 --rpy 3.1416,0,0 --all 8
   cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest
   cylindroid ik panda --tasks docs/goals.toml
+  cylindroid ik five-bar --to 1,1.5,0 --all 4
   cylindroid ik docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
 
 A file of tasks is one of `move`, see `move --help`. A solution reaches all of its tasks of type \

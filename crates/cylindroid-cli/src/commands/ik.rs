@@ -5,8 +5,10 @@ mod goals;
 use std::io::Write;
 use std::process::ExitCode;
 
-use cylindroid::Error;
-use cylindroid::ik::{Budget, FoundBy, IkOptions, MissReason, Solution, Solver, Task};
+use cylindroid::ik::{
+    Budget, FoundBy, Goal, IkOptions, MissReason, Solution, Solver, Task, solve, solve_distinct,
+};
+use cylindroid::{Error, Mechanism};
 use serde::Serialize;
 
 use self::goals::{GoalJson, Goals, controlled, first_frame, goals};
@@ -130,23 +132,32 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         budget: Budget { iterations: args.iterations, time: None },
         ..IkOptions::default()
     };
-    let mut solver = Solver::new(&robot, &goals, &options)?;
-    if let Some(gap) = gap {
-        Error::check_finite("--gap", &[gap])?;
-        solver.avoid(collision_model(&robot, &args.avoidance.collision)?, gap)?;
-    }
-    let found = match args.all {
-        None => vec![solver.solve(&goals)?],
-        Some(count) => match solver.solve_distinct(&goals, count)? {
-            none if none.is_empty() => vec![solver.solve(&goals)?],
-            some => some,
-        },
-    };
     let joint_names = output::joint_names(&robot);
-    let analytic = solver.analytic().map(|analytic| AnalyticJson {
-        structure: analytic.geometry().to_string(),
-        locked: analytic.locked().iter().map(|&c| joint_names[c]).collect(),
-    });
+    let (found, analytic) = if robot.is_closed() {
+        if gap.is_some() {
+            let reason = "distances of bodies are kept by serial arms only";
+            return Err(refused("--avoid", &robot, reason).into());
+        }
+        (closed_chain(&robot, &goals, &options, args.all)?, None)
+    } else {
+        let mut solver = Solver::new(&robot, &goals, &options)?;
+        if let Some(gap) = gap {
+            Error::check_finite("--gap", &[gap])?;
+            solver.avoid(collision_model(&robot, &args.avoidance.collision)?, gap)?;
+        }
+        let found = match args.all {
+            None => vec![solver.solve(&goals)?],
+            Some(count) => match solver.solve_distinct(&goals, count)? {
+                none if none.is_empty() => vec![solver.solve(&goals)?],
+                some => some,
+            },
+        };
+        let analytic = solver.analytic().map(|analytic| AnalyticJson {
+            structure: analytic.geometry().to_string(),
+            locked: analytic.locked().iter().map(|&c| joint_names[c]).collect(),
+        });
+        (found, analytic)
+    };
     let Some(first) = found.first() else { anyhow::bail!("no configuration was evaluated") };
     let first_frame = first_frame(&goals);
     let is_alone = goals.len() == 1 && first_frame.is_some();
@@ -180,6 +191,27 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         Style::Table => print(out, &report, (&description, controlled(&goals)), &found)?,
     }
     Ok(answer(first.success))
+}
+
+/// The solutions of a closed chain, or one failure.
+fn closed_chain(
+    robot: &Mechanism,
+    goals: &[Goal],
+    options: &IkOptions,
+    count: Option<usize>,
+) -> cylindroid::Result<Vec<Solution>> {
+    if let Some(count) = count {
+        let found = solve_distinct(robot, goals, options, count)?;
+        if !found.is_empty() {
+            return Ok(found);
+        }
+    }
+    Ok(vec![solve(robot, goals, options)?])
+}
+
+fn refused(option: &'static str, robot: &Mechanism, reason: &str) -> Error {
+    let value = format!("with loops of '{}'", robot.name());
+    Error::InvalidOption { option, value, reason: reason.to_owned() }
 }
 
 fn print(

@@ -79,6 +79,18 @@ pub(crate) fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::R
     Ok(EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) })
 }
 
+/// The same, by default the reference of a closed chain.
+pub(crate) fn reference_or_tool(
+    robot: &Mechanism,
+    args: &FrameArgs,
+) -> cylindroid::Result<EndEffector> {
+    let end_effector = end_effector(robot, args)?;
+    if args.frame.is_none() && robot.is_closed() {
+        return Ok(EndEffector { frame: robot.reference(), ..end_effector });
+    }
+    Ok(end_effector)
+}
+
 /// The error for `--actuated` with a tree, whose joints are all actuated.
 pub(crate) fn all_actuated(robot: &Mechanism) -> Error {
     Error::InvalidOption {

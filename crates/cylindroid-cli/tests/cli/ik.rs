@@ -35,6 +35,25 @@ fn several_answers() {
     );
 }
 
+/// The loops are closed with the target; the frame is the reference.
+#[test]
+fn working_modes_of_a_closed_chain() {
+    let command = ["ik", "five-bar", "--to", "1,1.5,0", "--all", "8"];
+    let report = json(&command, 0);
+    let solutions = report["solutions"].as_array().unwrap();
+    assert_eq!((solutions.len(), &report["frame"]), (4, &"reference".into()));
+    for q in solutions {
+        let q: Vec<String> = numbers(q).iter().map(ToString::to_string).collect();
+        let fk = json(&["fk", "five-bar", "--q", &q.join(","), "--frame", "reference"], 0);
+        assert!(difference(&numbers(&fk["pose"]["position"]), &[1.0, 1.5, 0.0]) < 1e-9);
+    }
+    assert!(text(&command).contains("reached by 4 configurations"));
+    let far = json(&["ik", "stewart", "--to", "0,0,1.9", "--rpy", "0,0,0"], 1);
+    assert_eq!(far["reason"]["kind"], "limits");
+    let message = refused(&["ik", "five-bar", "--to", "1,1.5,0", "--avoid"]);
+    assert!(message.contains("--avoid"), "{message}");
+}
+
 #[test]
 fn formulas_are_named() {
     let puma = json(&["info", "puma560"], 0);

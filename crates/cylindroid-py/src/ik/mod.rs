@@ -5,7 +5,7 @@ mod solution;
 
 use cylindroid::Error;
 use cylindroid::collision::CollisionModel;
-use cylindroid::ik::{IkOptions, Solver};
+use cylindroid::ik::{IkOptions, Solver, solve, solve_distinct};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -30,6 +30,15 @@ fn bodies(
     collisions.map(bodies).transpose()
 }
 
+/// Distances of bodies are kept by arms without loops only.
+fn refuse_bodies(given: bool) -> Result<()> {
+    if given {
+        let reason = "distances of bodies are kept by arms without loops only";
+        return Err(Failure::option("collisions", "with loops", reason));
+    }
+    Ok(())
+}
+
 #[pymethods]
 impl PyMechanism {
     /// A configuration that puts a frame at a target, or reaches several goals, within all limits.
@@ -39,13 +48,16 @@ impl PyMechanism {
     /// solver starts at `q0` and then at random configurations within the limits, until one reaches
     /// the target. The same seed gives the same solution.
     ///
+    /// The loops of a closed chain are closed together with the target: one frame, of whose
+    /// orientation all, two or no components are given; `ik_all` returns its working modes.
+    ///
     /// Parameters
     /// ----------
     /// target : array_like, (4, 4) or (N, 4, 4), or dict of them by frame, optional
     ///     Desired `world_from_tool` (m); a dict gives several frames that must be reached
     ///     simultaneously. Optional with `tasks`.
     /// frame : str, optional
-    ///     Default: `tool`.
+    ///     Default: `tool`, of a closed chain its reference.
     /// q0 : array_like, (n,) or (N, n), optional
     ///     Initial guess. Default: home.
     /// tool : array_like, (4, 4), optional
@@ -87,8 +99,7 @@ impl PyMechanism {
     /// Raises
     /// ------
     /// DimensionError, NotFiniteError, UnknownNameError, InvalidOptionError
-    /// ModelError
-    ///     For a mechanism with loops.
+    ///     Also for several goals of a closed chain.
     ///
     /// Examples
     /// --------
@@ -113,6 +124,14 @@ impl PyMechanism {
     /// >>> table = cy.HalfSpace(arm.tool, point=[0, 0, 0.2], normal=[0, 0, 1])
     /// >>> arm.ik(tasks=[cy.GazeTask(arm.tool, [0.6, 0.2, 0.0])], half_spaces=[table]).success
     /// True
+    ///
+    /// The working modes of a parallel robot, for a point of its platform:
+    ///
+    /// >>> import numpy as np
+    /// >>> five_bar, target = cy.load("five-bar"), np.eye(4)
+    /// >>> target[:2, 3] = 1.0, 1.5
+    /// >>> five_bar.ik_all(target, task="x,y").shape
+    /// (4, 4)
     #[pyo3(signature = (target = None, frame = None, q0 = None, *, tool = None, task = None,
         task_axes = None, nearest = false, weights = None, tasks = None, half_spaces = None,
         posture = None, collisions = None, fixed = None,
@@ -164,6 +183,21 @@ impl PyMechanism {
         {
             let reason = "give one, or as many as targets";
             return Err(Failure::option("q0", format!("{count} starts"), reason));
+        }
+        if robot.is_closed() {
+            refuse_bodies(bodies.is_some())?;
+            let solve_at = |i: usize| {
+                let start = starts.as_ref().map(|s| s.row(if s.count.is_some() { i } else { 0 }));
+                let initial_guess = start.map(<[f64]>::to_vec);
+                solve(robot, &targets.at(i), &IkOptions { initial_guess, ..options.clone() })
+            };
+            let inner = py.detach(|| match targets.count() {
+                None => solve_at(0).map(Many::One),
+                Some(count) => {
+                    (0..count).map(solve_at).collect::<cylindroid::Result<_>>().map(Many::All)
+                }
+            })?;
+            return Ok(PySolution { inner, n: robot.n() });
         }
         let inner = py.detach(|| {
             let mut solver = Solver::new(robot, &targets.goals, &options)?;
@@ -264,7 +298,13 @@ impl PyMechanism {
             return Err(Failure::option("target", "a batch", "give one pose, (4, 4)"));
         }
         let goals = targets.at(0);
+        if robot.is_closed() {
+            refuse_bodies(bodies.is_some())?;
+        }
         let found = py.detach(|| {
+            if robot.is_closed() {
+                return solve_distinct(robot, &goals, &options, count.max(1));
+            }
             let mut solver = Solver::new(robot, &goals, &options)?;
             if let Some((model, gap)) = bodies {
                 solver.avoid(model, gap)?;

@@ -138,7 +138,7 @@ impl Search<'_, '_> {
     fn frames(&self, mechanism: &PyMechanism, target: &Bound<'_, PyAny>) -> Result<Targets> {
         let by_name = self.task.as_ref().and_then(|task| task.cast::<PyDict>().ok());
         let goal = |frame: Option<&str>| -> Result<Goal> {
-            let end_effector = mechanism.end_effector(frame, self.tool.as_ref())?;
+            let end_effector = mechanism.reference_or_tool(frame, self.tool.as_ref())?;
             let name: Option<String> = match (&self.task, by_name, frame) {
                 (_, Some(tasks), Some(frame)) => {
                     tasks.get_item(frame)?.map(|name| entry("task", &name)).transpose()?

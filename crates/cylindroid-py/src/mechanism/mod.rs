@@ -151,6 +151,19 @@ impl PyMechanism {
         Ok(EndEffector { frame, frame_from_tool })
     }
 
+    /// The same, by default the reference of a closed chain.
+    pub(crate) fn reference_or_tool(
+        &self,
+        frame: Option<&str>,
+        tool: Option<&Numbers<'_>>,
+    ) -> Result<EndEffector> {
+        let end_effector = self.end_effector(frame, tool)?;
+        if frame.is_none() && self.inner.is_closed() {
+            return Ok(EndEffector { frame: self.inner.reference(), ..end_effector });
+        }
+        Ok(end_effector)
+    }
+
     /// The places of coordinates by their names.
     pub(crate) fn places(&self, names: &[String]) -> Result<Vec<usize>> {
         let known: Vec<&str> = self.inner.coordinates().iter().map(|c| c.name.as_str()).collect();

@@ -57,6 +57,7 @@ pub use position::continuation::{
 pub use position::load::{load, load_file, load_text, load_with_parameters};
 #[cfg(feature = "formats")]
 pub use position::parametric_model::ParametricModel;
+pub(crate) use position::platform::{Platform, PlatformChain, PlatformRotation};
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
 pub use singularity::operation_modes::{

@@ -212,22 +212,27 @@ pub(super) fn target_of(goals: &[Goal]) -> Option<Pose> {
 
 /// Returns an error for no goals, a closed chain, or a goal that is none for the mechanism.
 pub(super) fn check_all(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
-    if goals.is_empty() {
-        return Err(Error::InvalidOption {
-            option: "goals",
-            value: "none".to_owned(),
-            reason: "name an end effector and its target".to_owned(),
-        });
-    }
     if mechanism.is_closed() {
         return Err(Error::Model {
             model: mechanism.name().to_owned(),
             culprit: String::new(),
             message: format!(
-                "'{}' has loops or contacts, which inverse kinematics of its spanning tree would \
-                 open; move its reference with a servo, or assemble it for given actuated joints",
+                "'{}' has loops or contacts, which a solver of its spanning tree would open; use \
+                 ik::solve or ik::solve_distinct, which close them",
                 mechanism.name()
             ),
+        });
+    }
+    check_each(mechanism, goals)
+}
+
+/// Returns an error for no goals, or a goal that is none for the mechanism.
+pub(super) fn check_each(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
+    if goals.is_empty() {
+        return Err(Error::InvalidOption {
+            option: "goals",
+            value: "none".to_owned(),
+            reason: "name an end effector and its target".to_owned(),
         });
     }
     goals.iter().try_for_each(|goal| {

@@ -11,7 +11,8 @@
 //! least-squares iteration (`levenberg_marquardt`), four at once if possible
 //! (`parallel_restarts`). The closest solution is that of `nearest` and `self_motion`;
 //! `acceptance` decides what a solution is, `avoidance` keeps it apart from other bodies, and
-//! `miss` finds the reason where there is none.
+//! `miss` finds the reason where there is none. Closed chains go their own way (`closed_chain`): by
+//! assembly with the platform at its target.
 //!
 //! ```
 //! use cylindroid::ik::{Goal, IkOptions, solve};
@@ -27,6 +28,7 @@ mod acceptance;
 mod analytic;
 mod avoidance;
 mod branches;
+mod closed_chain;
 mod closed_form;
 mod convergence;
 mod damped_step;

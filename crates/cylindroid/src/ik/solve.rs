@@ -18,6 +18,7 @@ use std::time::Instant;
 
 use super::analytic::Analytic;
 use super::avoidance::Avoidance;
+use super::closed_chain::solve_closed;
 use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES};
 use super::convergence::{Errors, is_reached};
 use super::goal::{Goal, check_all, target_of};
@@ -102,9 +103,13 @@ enum Remaining {
 /// ```
 ///
 /// # Errors
-/// No goals, frames of another mechanism, non-finite values, a mechanism with loops.
+/// No goals, frames of another mechanism, non-finite values; for a mechanism with loops several
+/// goals or one that is no frame, half-spaces, an orientation of which one component is given.
 #[doc(alias = "random restart")]
 pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Solution> {
+    if mechanism.is_closed() {
+        return Ok(solve_closed(mechanism, goals, options, 1)?.swap_remove(0));
+    }
     Solver::new(mechanism, goals, options)?.solve(goals)
 }
 
@@ -131,6 +136,11 @@ pub fn solve_distinct(
     options: &IkOptions,
     count: usize,
 ) -> Result<Vec<Solution>> {
+    if mechanism.is_closed() {
+        let mut found = solve_closed(mechanism, goals, options, count)?;
+        found.retain(|s| s.success);
+        return Ok(found);
+    }
     Solver::new(mechanism, goals, options)?.solve_distinct(goals, count)
 }
 

@@ -66,6 +66,13 @@ impl Mechanism {
         self.data.far
     }
 
+    /// The same mechanism with the lengths of another one, of which it is an extension.
+    pub(crate) fn with_lengths_of(mut self, other: &Self) -> Self {
+        let data = Arc::make_mut(&mut self.data);
+        (data.reach, data.far) = (other.data.reach, other.data.far);
+        self
+    }
+
     /// The same mechanism with its characteristic length, which depends on its home.
     pub(super) fn measured(mut self) -> Self {
         let [reach, far] = self.lengths();

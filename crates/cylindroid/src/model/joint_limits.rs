@@ -91,6 +91,16 @@ impl Mechanism {
         }
         Ok(Self { data: Arc::new(data) })
     }
+
+    /// The same mechanism without position limits.
+    pub(crate) fn without_position_limits(&self) -> Self {
+        let mut data = Data::clone(&self.data);
+        let joints = data.joints.iter_mut().map(|j| &mut j.limits);
+        for limits in joints.chain(data.coordinates.iter_mut().map(|c| &mut c.limits)) {
+            (limits.lower, limits.upper) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        Self { data: Arc::new(data) }
+    }
 }
 
 impl Data {

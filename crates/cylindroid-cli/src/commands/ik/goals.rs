@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::args::IkArgs;
 use crate::commands::move_to;
-use crate::commands::shared::end_effector;
+use crate::commands::shared::reference_or_tool;
 use crate::commands::target::{target_pose, task};
 use crate::output::PoseJson;
 
@@ -131,7 +131,7 @@ pub(super) fn goals(args: &IkArgs, robot: &Mechanism, start: &[f64]) -> anyhow::
     let mut all = Vec::new();
     let mut parts = Vec::new();
     if is_given || (frames.is_empty() && args.tasks.is_none()) {
-        let end_effector = end_effector(robot, &args.frame)?;
+        let end_effector = reference_or_tool(robot, &args.frame)?;
         let (task, what) = task(given, None, robot)?;
         let from = robot.state(start)?.pose(end_effector);
         let other = ", with --task FRAME=X,Y,Z or with --tasks FILE.toml";

@@ -5,6 +5,7 @@
 //! `predictor_corrector` tracks one branch of closed configurations, and `continuation` moves
 //! coordinates along it up to a singularity or limit. `assembly_modes` searches for all assemblies
 //! from the random restarts of `initial_guesses`; `configuration_signature` distinguishes them.
+//! `platform` makes coordinates of the pose of an end effector, so that it can be prescribed.
 
 pub(crate) mod assembly;
 pub(crate) mod assembly_modes;
@@ -17,4 +18,5 @@ pub(crate) mod load;
 pub(crate) mod loop_closure;
 #[cfg(feature = "formats")]
 pub(crate) mod parametric_model;
+pub(crate) mod platform;
 pub(crate) mod predictor_corrector;

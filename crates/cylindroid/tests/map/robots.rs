@@ -1,0 +1,74 @@
+//! Parallel robots in the plane, and the geometry to check them by.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use cylindroid::Mechanism;
+use cylindroid::model::formats;
+
+/// A joint: its name and type, its links, its origin, further lines.
+pub(crate) type JointLine<'a> = ([&'a str; 2], [&'a str; 2], [f64; 2], &'a str);
+
+/// A planar mechanism of these joints.
+pub(crate) fn planar(head: &str, joints: &[JointLine<'_>]) -> Mechanism {
+    let mut text = format!("name = \"planar\"\ndimension = 2\n{head}\n");
+    for ([name, kind], [a, b], [x, y], more) in joints {
+        write!(
+            text,
+            "[[joint]]\nname = \"{name}\"\ntype = \"{kind}\"\nbetween = [\"{a}\", \"{b}\"]\n\
+             origin = [{x:?}, {y:?}]\n{more}\n"
+        )
+        .unwrap();
+    }
+    formats::toml::parse(&text, Path::new("planar.toml")).unwrap()
+}
+
+/// The five-bar of the catalogue, actuated at both ground joints: crank 2 and coupler 1 about the
+/// origin, rocker 1 and rod sqrt 2 about (2, 0); the joint of coupler and rod is the platform.
+pub(crate) fn five_bar() -> Mechanism {
+    planar(
+        "reference = \"coupler\"\nreference_point = [1, 2]",
+        &[
+            (["q1", "revolute"], ["ground", "crank"], [0.0, 0.0], "actuated = true"),
+            (["q2", "revolute"], ["crank", "coupler"], [0.0, 2.0], ""),
+            (["q3", "revolute"], ["coupler", "rod"], [1.0, 2.0], ""),
+            (["q4", "revolute"], ["rod", "rocker"], [2.0, 1.0], ""),
+            (["q5", "revolute"], ["ground", "rocker"], [2.0, 0.0], "actuated = true"),
+        ],
+    )
+}
+
+/// A planar platform on three legs of variable length between the base points and those of the
+/// platform, which is at the origin at home.
+pub(crate) fn three_rpr(base: [[f64; 2]; 3], platform: [[f64; 2]; 3], limits: &str) -> Mechanism {
+    let mut names = Vec::new();
+    for (i, ([ax, ay], [bx, by])) in base.into_iter().zip(platform).enumerate() {
+        let slide = format!("axis = [{:?}, {:?}]\nactuated = true\n{limits}", bx - ax, by - ay);
+        let of = |what: &str| format!("{what}{i}");
+        names.push((of("a"), "revolute", ["ground".to_owned(), of("cylinder")], [ax, ay], None));
+        names.push((of("leg"), "prismatic", [of("cylinder"), of("rod")], [bx, by], Some(slide)));
+        names.push((of("b"), "revolute", [of("rod"), "platform".to_owned()], [bx, by], None));
+    }
+    let joints: Vec<JointLine<'_>> = names
+        .iter()
+        .map(|(name, kind, [a, b], origin, more)| {
+            ([name.as_str(), *kind], [a.as_str(), b], *origin, more.as_deref().unwrap_or(""))
+        })
+        .collect();
+    planar("reference = \"platform\"\nreference_point = [0, 0]", &joints)
+}
+
+/// The place of a coordinate.
+pub(crate) fn place(mechanism: &Mechanism, name: &str) -> usize {
+    mechanism.coordinates().iter().position(|c| c.name == name).unwrap()
+}
+
+/// Where the circles about a and b meet, left of the way from a to b first.
+pub(crate) fn circles(a: [f64; 2], r: f64, b: [f64; 2], s: f64) -> Option<[[f64; 2]; 2]> {
+    let (x, y) = (b[0] - a[0], b[1] - a[1]);
+    let d = x.hypot(y);
+    let along = (d * d + r * r - s * s) / (2.0 * d);
+    let height = (r * r - along * along).sqrt();
+    let at = |h: f64| [a[0] + (x * along - y * h) / d, a[1] + (y * along + x * h) / d];
+    (height >= 0.0).then(|| [at(height), at(-height)])
+}
