@@ -6,6 +6,7 @@ mod closed;
 mod distance;
 mod ik;
 pub(crate) mod inverses;
+mod map;
 mod move_to;
 mod screws;
 mod shared;
@@ -18,6 +19,7 @@ pub(crate) use closed::{
 };
 pub(crate) use distance::{CollisionArgs, DistanceArgs};
 pub(crate) use ik::IkArgs;
+pub(crate) use map::MapArgs;
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs, TargetArgs, TaskAxes,
 };
@@ -108,6 +110,9 @@ pub(crate) enum Command {
     /// Quantities of millions of configurations: samples, grids or files, into Parquet
     #[command(long_about = sweep::ABOUT, after_long_help = sweep::EXAMPLES)]
     Sweep(Box<SweepArgs>),
+    /// The workspace in the platform's coordinates, per working mode, with singularity loci
+    #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
+    Map(Box<MapArgs>),
     /// The web viewer: display a model, drag its tool or object, and monitor its measures
     #[command(long_about = view::ABOUT, after_long_help = view::EXAMPLES)]
     View(Box<ViewArgs>),

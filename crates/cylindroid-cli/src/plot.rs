@@ -4,6 +4,7 @@ mod conics;
 pub(crate) mod ellipses;
 mod fine;
 mod labels;
+pub(crate) mod map;
 pub(crate) mod screws;
 mod skeleton;
 pub(crate) mod tasks;

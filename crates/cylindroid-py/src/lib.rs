@@ -24,6 +24,7 @@ mod sweep;
 mod table;
 mod tasks;
 mod threads;
+mod workspace_map;
 
 use pyo3::prelude::*;
 
@@ -103,6 +104,8 @@ mod _core {
         PyHalfSpace, PyJointVelocitiesTask, PyLimitAvoidanceTask, PyManipulabilityTask,
         PyMotionTask, PyPostureTask, PyRelativeFrameTask, PyTaskReport, PyTaskServo,
     };
+    #[pymodule_export]
+    use crate::workspace_map::{PyWorkspaceMap, workspace_map};
 
     use super::*;
 

@@ -256,7 +256,7 @@ pub(crate) fn sweep<'py>(
     Ok(columns.into_any())
 }
 
-fn axes(over: &Bound<'_, PyDict>) -> Result<Vec<Axis>> {
+pub(crate) fn axes(over: &Bound<'_, PyDict>) -> Result<Vec<Axis>> {
     over.iter()
         .map(|(name, values)| {
             let name: String = entry("over", &name)?;

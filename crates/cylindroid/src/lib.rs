@@ -32,6 +32,7 @@
 //! | resolve forces of closed chains and grasps | [`closure::joint_torques`], [`closure::contact_forces`], [`closure::grasp_quality`] |
 //! | measure manipulability (Yoshikawa, ellipsoids, polytopes) | [`manipulability::Manipulability`], [`manipulability::Polytope`] |
 //! | sample millions of configurations into Parquet files | [`sweep::Sweep`] |
+//! | map the workspace and its singularity loci | [`sweep::Map`] |
 //!
 //! # Conventions
 //!
@@ -102,6 +103,7 @@ mod book {
         GuideKinematics "../../../docs/guide/kinematics.md"
         GuideLoading "../../../docs/guide/loading.md"
         GuideManipulability "../../../docs/guide/manipulability.md"
+        GuideMaps "../../../docs/guide/maps.md"
         GuideMobility "../../../docs/guide/mobility.md"
         GuideScrews "../../../docs/guide/screws.md"
         GuideStatics "../../../docs/guide/statics.md"

@@ -398,6 +398,21 @@ pub const PATH_SINGULAR: f64 = 1e-3;
 /// are shorter than [`SHARE_FOUND`].
 pub const LEAST_PATH_SINGULAR: f64 = 1e-5;
 
+/// Distance to a singularity of type I at which the way of a platform ends [-]: at a boundary of its
+/// workspace the square of it is the distance left, in characteristic lengths.
+pub const PLATFORM_SINGULAR: f64 = 1e-4;
+
+/// Residual of loops and of what vanishes on a singularity locus, at its points [-]: ten to a hundred
+/// roundings.
+pub const LOCUS_MET: f64 = 1e-12;
+
+/// Step in scaled coordinates (rad) of the second derivatives of loops, which only direct Newton's
+/// method: their error is then 1e-10.
+pub const LOCUS_STEP: f64 = 1e-5;
+
+/// A coordinate whose share of a singular motion of length one is below this is at rest [-].
+pub const LOCUS_AT_REST: f64 = 1e-6;
+
 /// What falls to zero with the distance d to a singularity is below its root there, what does not
 /// is above it; the root of distances below the square of this is that of rounding [-].
 pub const VANISHING: f64 = 1e-6;

@@ -7,6 +7,7 @@ mod ik;
 pub(crate) mod info;
 pub(crate) mod inverse_selection;
 mod jacobian;
+mod map;
 mod models;
 pub(crate) mod move_to;
 pub(crate) mod screws;
@@ -39,6 +40,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Statics(args) => closed::statics::run(args, style, out),
         Command::Grasp(args) => closed::grasp::run(args, style, out),
         Command::Sweep(args) => sweep::run(args, style, out),
+        Command::Map(args) => map::run(args, style, out),
         Command::View(args) => view::run(args, style, out),
     }
 }

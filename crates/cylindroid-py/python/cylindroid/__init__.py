@@ -99,6 +99,7 @@ from ._core import (
     Transversals,
     TruncatedDirection,
     WaypointMove,
+    WorkspaceMap,
     __version__,
     adjoint,
     bracket,
@@ -139,6 +140,7 @@ from ._core import (
     sweep,
     transversals,
     velocity_conversion,
+    workspace_map,
     wrench_pitch_form,
 )
 from ._errors import (
@@ -254,6 +256,7 @@ __all__ = [
     "UnknownNameError",
     "UnreadableFileError",
     "WaypointMove",
+    "WorkspaceMap",
     "__version__",
     "adjoint",
     "bracket",
@@ -294,5 +297,6 @@ __all__ = [
     "sweep",
     "transversals",
     "velocity_conversion",
+    "workspace_map",
     "wrench_pitch_form",
 ]

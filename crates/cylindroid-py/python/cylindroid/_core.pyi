@@ -94,6 +94,7 @@ __all__ = [
     "Transversals",
     "TruncatedDirection",
     "WaypointMove",
+    "WorkspaceMap",
     "__version__",
     "adjoint",
     "bracket",
@@ -134,6 +135,7 @@ __all__ = [
     "sweep",
     "transversals",
     "velocity_conversion",
+    "workspace_map",
     "wrench_pitch_form",
 ]
 
@@ -1946,6 +1948,21 @@ class Transversals:
     @property
     def at_infinity(self) -> _Array: ...
 
+@final
+class WorkspaceMap:
+    @property
+    def axes(self) -> dict[str, tuple[float, float, int]]: ...
+    @property
+    def held(self) -> dict[str, float]: ...
+    @property
+    def free_motions(self) -> int: ...
+    @property
+    def signed(self) -> tuple[bool, bool]: ...
+    @property
+    def modes(self) -> list[dict[str, _Array]]: ...
+    @property
+    def loci(self) -> list[dict[str, Any]]: ...
+
 def adjoint(a_from_b: ArrayLike) -> _Array: ...
 def bracket(a: ArrayLike, b: ArrayLike) -> _Array: ...
 def catalogue() -> list[tuple[str, str, str]]: ...
@@ -2069,4 +2086,16 @@ def transversals(
     noise: float | None = None,
 ) -> Transversals: ...
 def velocity_conversion(b_from_a: ArrayLike) -> _Array: ...
+def workspace_map(
+    mechanism: Mechanism,
+    over: dict[str, tuple[float, float, int]],
+    at: dict[str, float] | None = None,
+    free: Sequence[str] | None = None,
+    frame: str | None = None,
+    tool: ArrayLike | None = None,
+    q: ArrayLike | None = None,
+    starts: int = 64,
+    seed: int = 0,
+    loci: bool = True,
+) -> WorkspaceMap: ...
 def wrench_pitch_form(a: ArrayLike, b: ArrayLike, h: float) -> float: ...

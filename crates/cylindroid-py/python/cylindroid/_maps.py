@@ -8,20 +8,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._core import WorkspaceMap
 from ._figure import equal_scales, is_spatial, pyplot
 
 
 def map(
-    columns: Mapping[str, ArrayLike],
+    columns: Mapping[str, ArrayLike] | WorkspaceMap,
     color: str | None = None,
-    x: str = "x",
+    x: str | None = None,
     y: str | None = "y",
     z: str | None = None,
     ax: Any = None,
     *,
     log: bool = False,
+    mode: int = 0,
 ) -> Any:
-    """A sweep as a slice, a cloud of points, or a histogram.
+    """A sweep as a slice, a cloud of points, or a histogram; a working mode of a map with its loci.
 
     Rows that are a grid of x and y are drawn as a slice, one cell for each, with the line on which a
     value that changes its sign is zero; other rows as points, in space with `z`; `x` alone (`y=None`) as
@@ -30,21 +32,28 @@ def map(
     Parameters
     ----------
     columns : mapping of str to array_like, (N,)
-        As `cylindroid.sweep` returns them; a DataFrame is one too.
+        As `cylindroid.sweep` returns them; a DataFrame is one too. Of a `WorkspaceMap` over two axes
+        one mode is drawn, with the curves that belong to it.
     color : str, optional
         The column that colours cells or points; values that are not finite are left out. A slice
-        needs one.
+        needs one. Default for a `WorkspaceMap`: 'type_two'.
     x, y, z : str, optional
-        The columns of the axes: metres for x, y and z of a pose, or coordinates of a grid.
+        The columns of the axes: metres for x, y and z of a pose, or coordinates of a grid. Default:
+        'x' and 'y', of a `WorkspaceMap` its axes.
     ax : matplotlib axes, optional
         Default: new ones.
     log : bool, optional
         Logarithmic colours, or numbers of a histogram.
+    mode : int
+        The working mode of a `WorkspaceMap`.
 
     Returns
     -------
     The axes.
     """
+    if isinstance(columns, WorkspaceMap):
+        return _mode(columns, mode, color, ax, log)
+    x = "x" if x is None else x
     names = [name for name in (x, y, z, color) if name is not None]
     for name in names:
         if name not in columns:
@@ -92,6 +101,29 @@ def map(
             equal_scales(ax)
     if color is not None:
         ax.figure.colorbar(drawn, ax=ax, label=color, pad=0.05 if z is None else 0.15)
+    return ax
+
+
+_COLORS = {"type I": "tab:blue", "type II": "tab:red", "passive": "dimgray", "limit": "tab:green"}
+
+
+def _mode(found: WorkspaceMap, mode: int, color: str | None, ax: Any, log: bool) -> Any:
+    """One working mode of a map over two axes, and its loci."""
+    if len(found.axes) != 2:
+        raise ValueError(f"the map has {len(found.axes)} axes; two can be drawn")
+    if not 0 <= mode < len(found.modes):
+        raise ValueError(f"mode is {mode}, the map has {len(found.modes)} modes, from 0 on")
+    x, y = found.axes
+    ax = map(found.modes[mode], color or "type_two", x, y, ax=ax, log=log)
+    named = set()
+    for locus in found.loci:
+        kind = locus["kind"]
+        if mode in locus["modes"]:
+            label = None if kind in named else kind
+            named.add(kind)
+            ax.plot(*locus["points"].T, color=_COLORS[kind], label=label)
+    if named:
+        ax.legend(loc="best")
     return ax
 
 

@@ -58,6 +58,15 @@ pub use position::load::{load, load_file, load_text, load_with_parameters};
 #[cfg(feature = "formats")]
 pub use position::parametric_model::ParametricModel;
 pub(crate) use position::platform::{Platform, PlatformChain, PlatformRotation};
+#[cfg(feature = "sweep")]
+pub(crate) use position::{
+    configuration_signature::{Landmarks, link_poses, signature_distance},
+    initial_guesses::perturbed,
+    loop_equations::LoopEquations,
+    platform_path::{Obstruction, PathNode, PlatformPath},
+    signed_singularity::SignedSingularity,
+    singular_curve::{Curve, CurveDomain, CurveTracer, Vanishing},
+};
 pub use singularity::diagnosis::Diagnosis;
 pub use singularity::generic_mobility::GenericMobility;
 pub use singularity::operation_modes::{

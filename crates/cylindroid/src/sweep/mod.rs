@@ -3,8 +3,9 @@
 //!
 //! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
-//! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder` (on disk, stopped and
-//! resumed).
+//! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder`
+//! (on disk, stopped and resumed). `map` goes its own way: the workspace in the coordinates of the
+//! platform.
 //!
 //! ```
 //! use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions};
@@ -28,6 +29,7 @@ mod evaluate;
 mod folder;
 mod job;
 mod manifest;
+mod map;
 mod options;
 mod parquet_file;
 mod parquet_input;
@@ -43,6 +45,7 @@ mod table;
 pub use designs::{AxisKinds, DesignSpace, ParameterRange};
 pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
+pub use map::{Locus, LocusKind, Map, MapOptions, WorkingMode};
 pub use options::{SweepOptions, VelocityMetric};
 pub use parquet_input::parquet_configurations;
 pub use quantity::Quantity;

@@ -7,7 +7,10 @@
     clippy::float_cmp_const
 )]
 
+mod five_bar;
 mod inverse;
+mod options;
+mod planar_platform;
 mod robots;
 #[allow(dead_code)] // of the helpers, a few are needed here
 #[path = "../it/support.rs"]

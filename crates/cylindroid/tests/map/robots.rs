@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use cylindroid::Mechanism;
 use cylindroid::model::formats;
+use cylindroid::{Mechanism, Pose, Vec3};
 
 /// A joint: its name and type, its links, its origin, further lines.
 pub(crate) type JointLine<'a> = ([&'a str; 2], [&'a str; 2], [f64; 2], &'a str);
@@ -34,6 +34,25 @@ pub(crate) fn five_bar() -> Mechanism {
             (["q3", "revolute"], ["coupler", "rod"], [1.0, 2.0], ""),
             (["q4", "revolute"], ["rod", "rocker"], [2.0, 1.0], ""),
             (["q5", "revolute"], ["ground", "rocker"], [2.0, 0.0], "actuated = true"),
+        ],
+    )
+}
+
+/// The same at another place and of another size.
+pub(crate) fn five_bar_at(world_from_ground: Pose, scale: f64) -> Mechanism {
+    let at = |x: f64, y: f64| {
+        let p = world_from_ground * (Vec3::new(x, y, 0.0) * scale);
+        [p.x, p.y]
+    };
+    let [tip_x, tip_y] = at(1.0, 2.0);
+    planar(
+        &format!("reference = \"coupler\"\nreference_point = [{tip_x:?}, {tip_y:?}]"),
+        &[
+            (["z5", "revolute"], ["ground", "rocker"], at(2.0, 0.0), "actuated = true"),
+            (["y4", "revolute"], ["rod", "rocker"], at(2.0, 1.0), ""),
+            (["x3", "revolute"], ["coupler", "rod"], at(1.0, 2.0), ""),
+            (["b2", "revolute"], ["crank", "coupler"], at(0.0, 2.0), ""),
+            (["a1", "revolute"], ["ground", "crank"], at(0.0, 0.0), "actuated = true"),
         ],
     )
 }

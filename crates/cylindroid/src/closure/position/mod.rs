@@ -6,6 +6,8 @@
 //! coordinates along it up to a singularity or limit. `assembly_modes` searches for all assemblies
 //! from the random restarts of `initial_guesses`; `configuration_signature` distinguishes them.
 //! `platform` makes coordinates of the pose of an end effector, so that it can be prescribed.
+//! Maps move it with `platform_path` and follow `singular_curve`s, by the `loop_equations` and the
+//! `signed_singularity` of one mechanism.
 
 pub(crate) mod assembly;
 pub(crate) mod assembly_modes;
@@ -18,5 +20,13 @@ pub(crate) mod load;
 pub(crate) mod loop_closure;
 #[cfg(feature = "formats")]
 pub(crate) mod parametric_model;
+#[cfg(feature = "sweep")]
+pub(crate) mod loop_equations;
 pub(crate) mod platform;
+#[cfg(feature = "sweep")]
+pub(crate) mod platform_path;
 pub(crate) mod predictor_corrector;
+#[cfg(feature = "sweep")]
+pub(crate) mod signed_singularity;
+#[cfg(feature = "sweep")]
+pub(crate) mod singular_curve;

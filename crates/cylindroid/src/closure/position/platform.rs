@@ -5,9 +5,11 @@
 //!          freedom ties the end of the chain to the tool
 //! Shapes   coordinates: those of the mechanism in their order, then those of the platform
 //! Units    m, rad
-//! Frame    slides along the axes of `world_from_zero`, in the plane x and y; a rotation about one
-//!          axis, in the plane about z, or a rotation vector
-//! Valid    any mechanism, serial arms too, whose chain becomes a loop
+//! Frame    slides along the axes of `world_from_zero`, in the plane x and y; rotations: yaw, pitch
+//!          and roll about z, y and x (`R = Rz(yaw) Ry(pitch) Rx(roll)`), in the plane about z, or a
+//!          rotation vector where none of them is prescribed
+//! Valid    any mechanism, serial arms too, whose chain becomes a loop. Angles are singular at a pitch
+//!          of a quarter turn, if some of them are free; the rotation vector is not
 //! Why so   inverse kinematics of closed chains is then assembly with platform coordinates
 //!          prescribed, and everything that closes, tracks and examines loops applies. Rows for the
 //!          pose beside those of the loops would need a second form of each of these
@@ -17,7 +19,7 @@
 use crate::error::Result;
 use crate::kinematics::EndEffector;
 use crate::model::{Dimension, Inclusion, JointKind, JointSpec, LoopJointSpec, Mechanism};
-use crate::spatial::{Pose, Rotation, Vec3};
+use crate::spatial::{Pose, Rotation, Rpy, Vec3};
 
 /// The rotations of the chain.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +28,8 @@ pub(crate) enum PlatformRotation {
     Fixed,
     /// About one axis, in the axes of the zero pose.
     About(Vec3),
+    /// Yaw, pitch and roll; in the plane about z.
+    Angles,
     /// All, as a rotation vector; in the plane about z.
     Free,
 }
@@ -140,9 +144,28 @@ impl Platform {
             PlatformRotation::About(axis) => {
                 all.push(axis.unit(0.0).map_or(0.0, |axis| axis.dot(rotation.log())));
             }
+            PlatformRotation::Angles => {
+                let Rpy { roll, pitch, yaw } = Rpy::of(rotation);
+                all.extend([yaw, pitch, roll]);
+            }
             PlatformRotation::Free => all.extend(rotation.log().to_array()),
         }
         all
+    }
+
+    /// Number of coordinates without those of the platform.
+    pub(crate) fn n(&self) -> usize {
+        self.inner.n()
+    }
+
+    /// The names of the platform's coordinates.
+    pub(crate) fn components(&self) -> Vec<&'static str> {
+        let joints = self.chain.joints(self.inner.dimension());
+        let names = joints.into_iter().flat_map(|(name, kind, _)| match kind {
+            JointKind::Spherical => vec!["rx", "ry", "rz"],
+            _ => vec![name],
+        });
+        names.collect()
     }
 
     /// The configuration of the mechanism with the platform at the pose of its tool.
@@ -183,6 +206,11 @@ impl PlatformChain {
                 let name = if dimension == Dimension::Planar { "rz" } else { "turn" };
                 all.push((name, JointKind::Revolute, axis));
             }
+            PlatformRotation::Angles => all.extend([
+                ("yaw", JointKind::Revolute, Vec3::Z),
+                ("pitch", JointKind::Revolute, Vec3::Y),
+                ("roll", JointKind::Revolute, Vec3::X),
+            ]),
             PlatformRotation::Free => all.push(("rotation", JointKind::Spherical, Vec3::Z)),
         }
         all

@@ -1,0 +1,144 @@
+//! `map`: workspace and singularity loci in the coordinates of the platform.
+
+mod file;
+mod report;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use cylindroid::sweep::{LocusKind, Map, MapOptions};
+
+use self::report::{MapJson, report};
+use crate::args::MapArgs;
+use crate::commands::shared::{Style, answer, reference_or_tool};
+use crate::output::{self, Align, number};
+use crate::plot;
+
+pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+    let robot = cylindroid::load(&args.model)?;
+    if let Some(path) = &args.plot {
+        plot::check(path)?;
+        plot::map::check(args.over.len())?;
+    }
+    if let Some(path) = &args.out {
+        file::check(path)?;
+    }
+    let frame = reference_or_tool(&robot, &args.frame)?;
+    let at = args.at.iter().map(|value| (value.0.clone(), Some(value.1)));
+    let free = args.free.iter().map(|name| (name.clone(), None));
+    let map = Map::of(
+        &robot,
+        MapOptions {
+            axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
+            held: at.chain(free).collect(),
+            end_effector: Some(frame),
+            start: Some(args.q.configuration(&robot, false)?),
+            starts: args.starts,
+            seed: args.seed,
+            loci: !args.no_loci,
+        },
+    )?;
+    let report = report(
+        &robot,
+        &map,
+        (&robot.frame_of(frame.frame).name, frame.frame_from_tool.translation.to_array()),
+    );
+    if let Some(path) = &args.out {
+        file::write(&robot, &map, &report, path)?;
+    }
+    if let Some(path) = &args.plot {
+        plot::map::draw(&map, &format!("{}: workspace of {}", robot.name(), report.frame), path)?;
+    }
+    match style {
+        Style::Json => output::json(out, &report)?,
+        Style::Table => print(out, &report)?,
+    }
+    Ok(answer(!map.modes.is_empty()))
+}
+
+fn print(out: &mut dyn Write, report: &MapJson<'_>) -> anyhow::Result<()> {
+    let axes = report.axes.iter().map(|a| {
+        format!("{} from {} to {} {} in {}", a.name, number(a.from), number(a.to), a.unit, a.count)
+    });
+    let held = report
+        .held
+        .iter()
+        .map(|h| format!("{} = {} {}", h.name, number(h.value), Map::unit(h.name)));
+    let held = if report.held.is_empty() {
+        "nothing".to_owned()
+    } else {
+        held.collect::<Vec<_>>().join(", ")
+    };
+    let free = match report.free_motions {
+        0 => "none".to_owned(),
+        count => format!(
+            "{count}: working modes are not distinguished, and there are no curves; hold components \
+             with --at"
+        ),
+    };
+    output::pairs(
+        out,
+        [
+            ("model", report.model.to_owned()),
+            ("frame", report.frame.to_owned()),
+            ("axes", axes.collect::<Vec<_>>().join("; ")),
+            ("held", held),
+            ("free motions", free),
+            ("working modes", report.modes.len().to_string()),
+        ],
+    )?;
+    if report.modes.is_empty() {
+        writeln!(out, "\nNo configuration was found in the cells; --q starts elsewhere.")?;
+        return Ok(());
+    }
+    writeln!(out)?;
+    let columns = [
+        ("mode", Align::Left),
+        ("cells", Align::Right),
+        ("of all [%]", Align::Right),
+        ("least type I [-]", Align::Right),
+        ("least type II [-]", Align::Right),
+    ];
+    let rows = report.modes.iter().enumerate().map(|(i, mode)| {
+        vec![
+            (i + 1).to_string(),
+            mode.cells.to_string(),
+            number(100.0 * mode.cells as f64 / report.cells as f64),
+            number(mode.least_type_one),
+            number(mode.least_type_two),
+        ]
+    });
+    output::table(out, &columns, rows)?;
+    if report.loci.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    let columns = [
+        ("curves", Align::Left),
+        ("modes", Align::Left),
+        ("closed", Align::Right),
+        ("open", Align::Right),
+        ("points", Align::Right),
+    ];
+    let mut rows: Vec<(String, String, [usize; 3])> = Vec::new();
+    for kind in LocusKind::ALL {
+        for locus in report.loci.iter().filter(|l| l.kind == kind.name()) {
+            let name =
+                locus.limit.map_or_else(|| locus.kind.to_owned(), |of| format!("limit of {of}"));
+            let modes: Vec<String> = locus.modes.iter().map(|m| (m + 1).to_string()).collect();
+            let modes = modes.join(", ");
+            let same = |row: &&mut (String, String, [usize; 3])| row.0 == name && row.1 == modes;
+            let counts =
+                [usize::from(locus.closed), usize::from(!locus.closed), locus.points.len()];
+            match rows.iter_mut().find(same) {
+                Some(row) => row.2.iter_mut().zip(counts).for_each(|(a, b)| *a += b),
+                None => rows.push((name, modes, counts)),
+            }
+        }
+    }
+    let rows = rows.into_iter().map(|(name, modes, counts)| {
+        [name, modes].into_iter().chain(counts.map(|c| c.to_string())).collect::<Vec<_>>()
+    });
+    output::table(out, &columns, rows)?;
+    Ok(())
+}

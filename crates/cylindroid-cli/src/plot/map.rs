@@ -1,0 +1,169 @@
+//! A map over two axes: a panel for each working mode with its cells and its curves.
+
+use std::path::Path;
+
+use cylindroid::sweep::{Locus, LocusKind, Map};
+use cylindroid::{Error, Result};
+use plotters::prelude::*;
+
+use super::fine::{Fine, at, px};
+use super::{Area, COLOURS, Drawn, FONT, TICK, save, titled};
+use crate::output::{self, without_rounding};
+
+/// Most modes that are drawn.
+const PANELS: usize = 12;
+/// Width of a panel and height of its title and of the legend [px].
+const WIDE: u32 = 420;
+const TITLE: u32 = 28;
+const LEGEND: u32 = 40;
+/// Margins of a panel: left, right, top, bottom [px].
+const MARGINS: [u32; 4] = [64, 18, 8, 46];
+/// The cells that a mode reaches, by the sign of their distance to type II.
+const CELLS: [RGBColor; 2] = [RGBColor(222, 235, 247), RGBColor(253, 230, 206)];
+
+/// Rejects numbers of axes that cannot be drawn.
+pub(crate) fn check(axes: usize) -> Result<()> {
+    if axes == 2 {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: "--plot",
+        value: format!("{axes} axes"),
+        reason: "a map of two axes can be drawn; name --over twice".to_owned(),
+    })
+}
+
+const fn colour(kind: LocusKind) -> RGBColor {
+    match kind {
+        LocusKind::TypeOne => COLOURS[0],
+        LocusKind::TypeTwo => COLOURS[3],
+        LocusKind::Passive => COLOURS[7],
+        _ => COLOURS[2],
+    }
+}
+
+/// Draws the map.
+pub(crate) fn draw(map: &Map, title: &str, path: &Path) -> Result<()> {
+    save(path, |svg| panels(map, title, svg))
+}
+
+fn panels(map: &Map, title: &str, svg: &mut String) -> Drawn {
+    let count = map.modes.len().clamp(1, PANELS);
+    let across = if count == 4 { 2 } else { count.min(3) };
+    let down = count.div_ceil(across);
+    let [left, right, top, bottom] = MARGINS;
+    let [x, y] = [&map.axes[0], &map.axes[1]];
+    let wide = WIDE - left - right;
+    // Equal scales for equal units.
+    let high = if Map::unit(&x.name) == Map::unit(&y.name) && x.to > x.from {
+        let high = f64::from(wide) * (y.to - y.from) / (x.to - x.from);
+        high.max(80.0).min(1200.0).round() as u32
+    } else {
+        wide
+    };
+    let panel = high + top + bottom + TITLE;
+    let (columns, lines) = (u32::try_from(across)?, u32::try_from(down)?);
+    let size = (px(WIDE * columns.max(2)), px(panel * lines + 34 + LEGEND));
+    let root = Fine::new(svg, size).into_drawing_area();
+    root.fill(&WHITE)?;
+    let root = titled(&root, title, 20)?;
+    let (all, legend_area) = root.split_vertically(px(panel * lines));
+    for (number, area) in all.split_evenly((down, across)).iter().enumerate().take(map.modes.len())
+    {
+        mode(map, number, area)?;
+    }
+    legend(map, &legend_area)?;
+    all.present()?;
+    drop((all, legend_area, root));
+    Ok(())
+}
+
+fn mode(map: &Map, number: usize, area: &Area<'_>) -> Drawn {
+    let mode = &map.modes[number];
+    let share = 100.0 * mode.cells() as f64 / map.cells() as f64;
+    let area = titled(area, &format!("mode {}: {share:.1} % of the cells", number + 1), 14)?;
+    let [x, y] = [&map.axes[0], &map.axes[1]];
+    let half = |axis: &cylindroid::sweep::Axis| match axis.count {
+        0 | 1 => 0.5,
+        count => 0.5 * (axis.to - axis.from) / (count - 1) as f64,
+    };
+    let (dx, dy) = (half(x), half(y));
+    let range = |from: f64, to: f64, by: f64| if to > from { from..to } else { from - by..to + by };
+    let [left, right, top, bottom] = MARGINS;
+    let mut chart = ChartBuilder::on(&area)
+        .margin_right(px(right))
+        .margin_top(px(top))
+        .x_label_area_size(px(bottom))
+        .y_label_area_size(px(left))
+        .build_cartesian_2d(range(x.from, x.to, dx), range(y.from, y.to, dy))?;
+    // Cells of a column with one colour are one rectangle.
+    let rows = usize::try_from(y.count)?;
+    for first in (0..map.cells()).step_by(rows.max(1)) {
+        let colour_of = |cell: usize| {
+            let side = usize::from(mode.type_two[cell] < 0.0);
+            mode.reached[cell].then_some(CELLS[side])
+        };
+        let mut from = first;
+        while from < first + rows {
+            let mut to = from + 1;
+            while to < first + rows && colour_of(to) == colour_of(from) {
+                to += 1;
+            }
+            if let Some(colour) = colour_of(from) {
+                let (a, b) = (map.values(from), map.values(to - 1));
+                let clip = |v: f64, from: f64, to: f64| v.max(from).min(to);
+                let corners = [
+                    (clip(a[0] - dx, x.from, x.to), clip(a[1] - dy, y.from, y.to)),
+                    (clip(b[0] + 1.1 * dx, x.from, x.to), clip(b[1] + dy, y.from, y.to)),
+                ];
+                chart.draw_series([Rectangle::new(corners, colour.filled())])?;
+            }
+            from = to;
+        }
+    }
+    chart
+        .configure_mesh()
+        .x_desc(format!("{} [{}]", x.name, Map::unit(&x.name)))
+        .y_desc(format!("{} [{}]", y.name, Map::unit(&y.name)))
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.12))
+        .axis_desc_style((FONT, 14))
+        .label_style((FONT, 12))
+        .set_all_tick_mark_size(TICK)
+        .x_labels(6)
+        .y_labels(6)
+        .x_label_formatter(&|x| output::number(without_rounding(*x)))
+        .y_label_formatter(&|y| output::number(without_rounding(*y)))
+        .draw()?;
+    let own = |locus: &&Locus| locus.modes.contains(&number);
+    for locus in map.loci.iter().filter(own) {
+        let points = locus.points.iter().map(|p| (p[0], p[1]));
+        chart.draw_series(LineSeries::new(points, colour(locus.kind).stroke_width(2)))?;
+    }
+    Ok(())
+}
+
+/// The kinds that occur, and the colours of cells.
+fn legend(map: &Map, area: &Area<'_>) -> Drawn {
+    const WIDTH: i32 = 100;
+    let mut x = 24;
+    for kind in LocusKind::ALL {
+        if map.loci.iter().any(|locus| locus.kind == kind) {
+            let ends = [at(x, 20), at(x + 24, 20)];
+            area.draw(&PathElement::new(ends, colour(kind).stroke_width(3)))?;
+            area.draw(&Text::new(kind.name(), at(x + 30, 13), (FONT, 14)))?;
+            x += WIDTH;
+        }
+    }
+    let words = if map.signed[1] {
+        ["reached, type II > 0", "reached, type II < 0"]
+    } else {
+        ["reached", ""]
+    };
+    for (colour, word) in CELLS.into_iter().zip(words).filter(|(_, word)| !word.is_empty()) {
+        area.draw(&Rectangle::new([at(x, 12), at(x + 24, 28)], colour.filled()))?;
+        area.draw(&Text::new(word, at(x + 30, 13), (FONT, 14)))?;
+        x += 190;
+    }
+    Ok(())
+}

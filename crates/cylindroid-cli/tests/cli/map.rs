@@ -1,0 +1,82 @@
+//! Maps: reports, files, pictures, bad input.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::{json, numbers, refused, text};
+
+const OVER: [&str; 6] = ["map", "five-bar", "--over", "x=-1.03:3:21", "--over", "y=-1.01:3:21"];
+
+/// The curves of the report, the rows of both files, and the picture belong to one map.
+#[test]
+fn a_five_bar() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (csv, file, svg) = (at("map.csv"), at("map.json"), at("map.svg"));
+    let report = json(&[&OVER[..], &["--out", &csv, "--plot", &svg]].concat(), 0);
+    assert_eq!((&report["cells"], &report["free_motions"]), (&441.into(), &0.into()));
+    assert_eq!(report["frame"], "reference");
+    let modes = report["modes"].as_array().unwrap();
+    let loci = report["loci"].as_array().unwrap();
+    assert!(modes.len() == 4 && !loci.is_empty());
+    let kinds: Vec<&str> = loci.iter().map(|l| l["kind"].as_str().unwrap()).collect();
+    assert!(kinds.contains(&"type I") && kinds.contains(&"passive"), "{kinds:?}");
+    for point in loci.iter().flat_map(|l| l["points"].as_array().unwrap()) {
+        let [x, y] = numbers(point)[..] else { panic!() };
+        let (left, right, root) = (x.hypot(y), (x - 2.0).hypot(y), 2.0_f64.sqrt());
+        let near = [left - 1.0, left - 3.0, right - root + 1.0, right - root - 1.0];
+        assert!(near.iter().any(|d| d.abs() < 1e-8), "{x} {y}");
+    }
+    let reached: u64 = modes.iter().map(|m| m["cells"].as_u64().unwrap()).sum();
+    let lines = fs::read_to_string(&csv).unwrap();
+    let first = "mode,x,y,q1,q2,q3,q4,type_one,type_two,limit_distance";
+    assert_eq!(lines.lines().next(), Some(first));
+    assert_eq!(lines.lines().count() as u64, reached + 1);
+    text(&[&OVER[..], &["--out", &file]].concat());
+    let whole: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    assert_eq!(whole["loci"], report["loci"]);
+    assert_eq!(whole["rows"].as_array().unwrap().len() as u64, reached);
+    assert_eq!(whole["columns"][9], "limit_distance");
+    let svg = fs::read_to_string(&svg).unwrap();
+    assert!(svg.contains("mode 4") && svg.contains("type I") && svg.contains("x [m]"));
+    assert_eq!(json(&[&OVER[..], &["--no-loci"]].concat(), 0)["loci"], Value::Array(Vec::new()));
+    assert!(text(&OVER).contains("working modes"));
+}
+
+/// Held, free and given components.
+#[test]
+fn components() {
+    let over = ["map", "stewart", "--over", "x=-0.1:0.1:3", "--starts", "4", "--seed", "2"];
+    let report = json(&over, 0);
+    let held: Vec<&str> =
+        report["held"].as_array().unwrap().iter().map(|h| h["name"].as_str().unwrap()).collect();
+    assert_eq!(held, ["y", "z", "yaw", "pitch", "roll"]);
+    let more = [&over[..], &["--at", "z=1.05", "--free", "yaw", "--q", "home"]].concat();
+    let report = json(&more, 0);
+    assert_eq!(report["free_motions"], 1);
+    assert_eq!(report["held"][0]["value"], 1.05);
+    assert!(text(&more).contains("not distinguished"));
+    let tool = [&over[..], &["--frame", "platform", "--tool", "0,0,0.1"]].concat();
+    assert_eq!(json(&tool, 0)["tool"][2], 0.1);
+    // Nowhere.
+    let far = ["map", "five-bar", "--over", "x=20:21:3"];
+    assert_eq!(json(&far, 1)["modes"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let message = refused(&["map", "five-bar", "--over", "z=0:1:3"]);
+    assert!(message.contains("z") && message.contains("rz"), "{message}");
+    let message = refused(&["map", "five-bar", "--over", "x=1:0:3"]);
+    assert!(message.contains("--over") && message.contains("smaller"), "{message}");
+    let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "x=1"]);
+    assert!(message.contains("once"), "{message}");
+    let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--plot", "map.svg"]);
+    assert!(message.contains("two axes"), "{message}");
+    let message = refused(&[&OVER[..], &["--out", "map.txt"]].concat());
+    assert!(message.contains(".csv or .json"), "{message}");
+    let message = refused(&["map", "five-bar", "--over", "x=0:1:1e9", "--over", "y=0:1:1e9"]);
+    assert!(message.contains("cells"), "{message}");
+    assert!(refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "y"]).contains("name=value"));
+}

@@ -1,0 +1,211 @@
+//! Maps: the workspace in the coordinates of the platform, with singularity loci.
+
+use cylindroid::sweep::{Locus, Map, MapOptions, WorkingMode};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::{self, Numbers};
+use crate::error::{Result, argument, count, entry};
+use crate::mechanism::PyMechanism;
+use crate::sweep::axes;
+
+/// The workspace of a mechanism over components of its platform's pose.
+///
+/// Attributes
+/// ----------
+/// axes : dict of str to (float, float, int)
+///     First and last value and the number of values of each axis; the last one changes fastest.
+/// held : dict of str to float
+///     Components that keep a value (m or rad).
+/// free_motions : int
+///     Motions that axes and held components leave: with some, modes are not distinguished,
+///     configurations are one of many, and there are no loci.
+/// signed : tuple of bool
+///     Whether the distances to singularities of type I and II have a sign.
+/// modes : list of dict of str to ndarray, (N,)
+///     The working modes. Columns with a number for each cell, NaN where the mode does not reach it:
+///     the axes, the coordinates by name, 'type_one' and 'type_two' (smallest generic over largest
+///     singular value of the loops, the platform or the actuated joints at rest), 'limit_distance'.
+/// loci : list of dict
+///     Curves, for two axes: 'kind' ('type I', 'type II', 'passive' or 'limit'), 'limit' (the
+///     coordinate or None), 'modes' (indices), 'closed', 'points' (values of the axes, (K, 2)) and 'q'
+///     (configurations, (K, n)).
+#[pyclass(frozen, module = "cylindroid", name = "WorkspaceMap")]
+#[derive(Debug)]
+pub(crate) struct PyWorkspaceMap {
+    map: Map,
+    names: Vec<String>,
+}
+
+#[pymethods]
+impl PyWorkspaceMap {
+    #[getter]
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let axes = PyDict::new(py);
+        for axis in &self.map.axes {
+            axes.set_item(&axis.name, (axis.from, axis.to, axis.count))?;
+        }
+        Ok(axes)
+    }
+
+    #[getter]
+    fn held<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let held = PyDict::new(py);
+        for (name, value) in &self.map.held {
+            held.set_item(name, value)?;
+        }
+        Ok(held)
+    }
+
+    #[getter]
+    fn free_motions(&self) -> usize {
+        self.map.free_motions
+    }
+
+    #[getter]
+    fn signed(&self) -> (bool, bool) {
+        (self.map.signed[0], self.map.signed[1])
+    }
+
+    #[getter]
+    fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let modes = self.map.modes.iter().map(|mode| self.columns(py, mode));
+        PyList::new(py, modes.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    #[getter]
+    fn loci<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let loci = self.map.loci.iter().map(|locus| self.locus(py, locus));
+        PyList::new(py, loci.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    fn __repr__(&self) -> String {
+        let names: Vec<&str> = self.map.axes.iter().map(|a| a.name.as_str()).collect();
+        let (modes, loci) = (self.map.modes.len(), self.map.loci.len());
+        format!("WorkspaceMap(over {}, {modes} modes, {loci} loci)", names.join(", "))
+    }
+}
+
+impl PyWorkspaceMap {
+    fn columns<'py>(&self, py: Python<'py>, mode: &WorkingMode) -> PyResult<Bound<'py, PyDict>> {
+        let columns = PyDict::new(py);
+        let values: Vec<Vec<f64>> = (0..self.map.cells()).map(|c| self.map.values(c)).collect();
+        for (k, axis) in self.map.axes.iter().enumerate() {
+            let column: Vec<f64> = values.iter().map(|v| v[k]).collect();
+            columns.set_item(&axis.name, column.into_pyarray(py))?;
+        }
+        let n = self.names.len();
+        for (i, name) in self.names.iter().enumerate() {
+            let column: Vec<f64> = mode.q.iter().skip(i).step_by(n.max(1)).copied().collect();
+            columns.set_item(name, column.into_pyarray(py))?;
+        }
+        let measures = [
+            ("type_one", &mode.type_one),
+            ("type_two", &mode.type_two),
+            ("limit_distance", &mode.limit_distance),
+        ];
+        for (name, values) in measures {
+            columns.set_item(name, values.clone().into_pyarray(py))?;
+        }
+        Ok(columns)
+    }
+
+    fn locus<'py>(&self, py: Python<'py>, locus: &Locus) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let rows = |rows: &[Vec<f64>], width: usize| {
+            arrays::rows(py, Some(rows.len()), width, rows.iter()).map_err(PyErr::from)
+        };
+        dict.set_item("kind", locus.kind.name())?;
+        dict.set_item("limit", locus.limit.as_deref())?;
+        dict.set_item("modes", locus.modes.clone())?;
+        dict.set_item("closed", locus.closed)?;
+        dict.set_item("points", rows(&locus.points, self.map.axes.len())?)?;
+        dict.set_item("q", rows(&locus.q, self.names.len())?)?;
+        Ok(dict)
+    }
+}
+
+/// The workspace of an arm or a parallel robot over components of its platform's pose, for each
+/// working mode, with the loci of its singularities.
+///
+/// Every working mode is followed from cell to cell by steps that pass no singularity of type I.
+/// Points of the loci are refined by Newton's method and followed by predictor and corrector.
+///
+/// Parameters
+/// ----------
+/// mechanism : Mechanism
+/// over : dict of str to (float, float, int)
+///     One to three axes: first and last value [m or rad] and number of values of 'x', 'y', 'z',
+///     'roll', 'pitch', 'yaw' (`R = Rz(yaw) Ry(pitch) Rx(roll)`); in the plane 'x', 'y', 'rz'. The last
+///     one changes fastest.
+/// at : dict of str to float, optional
+///     Values of other components [m or rad]. Components that are not named keep their value at `q` as
+///     far as the mechanism has freedoms for them, and follow otherwise.
+/// free : sequence of str, optional
+///     Components that may have any value.
+/// frame : str, optional
+///     The platform. Default: the reference of a closed chain, otherwise the tool.
+/// tool : array_like, (4, 4), optional
+///     `frame_from_tool`, a tool point fixed to the frame.
+/// q : array_like, (n,), optional
+///     A configuration in the workspace. Default: home.
+/// starts : int
+///     Random restarts that look for working modes at the start; others look in other cells.
+/// seed : int
+///     Selects other random restarts.
+/// loci : bool
+///     Follow the curves, for two axes.
+///
+/// Returns
+/// -------
+/// WorkspaceMap
+///
+/// Raises
+/// ------
+/// InvalidOptionError, UnknownNameError, DimensionError, NotFiniteError
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> five_bar = cy.load("five-bar")
+/// >>> found = cy.workspace_map(five_bar, {"x": (-1, 3, 17), "y": (0, 3, 13)})
+/// >>> len(found.modes), found.modes[0]["q1"].shape
+/// (4, (221,))
+#[pyfunction]
+#[pyo3(signature = (mechanism, over, at = None, free = None, frame = None, tool = None, q = None,
+    starts = 64, seed = 0, loci = true))]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub(crate) fn workspace_map<'py>(
+    py: Python<'py>,
+    #[pyo3(from_py_with = argument)] mechanism: PyRef<'py, PyMechanism>,
+    #[pyo3(from_py_with = argument)] over: Bound<'py, PyDict>,
+    #[pyo3(from_py_with = argument)] at: Option<Bound<'py, PyDict>>,
+    #[pyo3(from_py_with = argument)] free: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] frame: Option<&str>,
+    tool: Option<Numbers<'py>>,
+    q: Option<Numbers<'py>>,
+    #[pyo3(from_py_with = count)] starts: usize,
+    #[pyo3(from_py_with = argument)] seed: u64,
+    #[pyo3(from_py_with = argument)] loci: bool,
+) -> Result<PyWorkspaceMap> {
+    let robot = &*mechanism;
+    let mechanism = robot.inner.clone();
+    let mut held: Vec<(String, Option<f64>)> = Vec::new();
+    for (name, value) in at.iter().flat_map(|at| at.iter()) {
+        held.push((entry("at", &name)?, Some(entry("at", &value)?)));
+    }
+    held.extend(free.unwrap_or_default().into_iter().map(|name| (name, None)));
+    let options = MapOptions {
+        axes: axes(&over)?,
+        held,
+        end_effector: Some(robot.reference_or_tool(frame, tool.as_ref())?),
+        start: q.as_ref().map(|q| q.vector("q").map(<[f64]>::to_vec)).transpose()?,
+        starts,
+        seed,
+        loci,
+    };
+    let map = py.detach(|| Map::of(&mechanism, options))?;
+    let names = mechanism.coordinates().iter().map(|c| c.name.clone()).collect();
+    Ok(PyWorkspaceMap { map, names })
+}

@@ -1,0 +1,74 @@
+"""Maps: columns of working modes, loci, what is held, bad input."""
+
+import numpy as np
+import pytest
+
+import cylindroid as cy
+
+
+@pytest.fixture(scope="module")
+def found():
+    return cy.workspace_map(
+        cy.load("five-bar"), {"x": (-1.03, 3.01, 15), "y": (-0.51, 3.07, 15)}, starts=32
+    )
+
+
+def test_columns_and_loci(found):
+    robot = cy.load("five-bar")
+    assert list(found.axes) == ["x", "y"] and found.held == {} and found.free_motions == 0
+    assert found.signed == (True, True) and len(found.modes) == 4
+    for mode in found.modes:
+        reached = np.isfinite(mode["q1"])
+        assert reached.sum() > 20 and len(mode["x"]) == 225
+        q = np.stack([mode[name] for name in robot.joint_names], axis=1)[reached]
+        at = robot.fk(q, "reference")[:, :2, 3]
+        assert np.abs(at - np.stack([mode["x"], mode["y"]], axis=1)[reached]).max() < 1e-9
+    assert {"type I", "passive"} <= {locus["kind"] for locus in found.loci}
+    for locus in found.loci:
+        count = len(locus["points"])
+        assert locus["points"].shape == (count, 2) and locus["q"].shape == (count, 4)
+        # Crank 2 and coupler 1, rocker 1 and rod sqrt(2).
+        x, y = locus["points"].T
+        left, right = np.hypot(x, y), np.hypot(x - 2, y)
+        root = 2**0.5
+        near = [abs(left - 1), abs(left - 3), abs(right - root + 1), abs(right - root - 1)]
+        assert np.min(near, axis=0).max() < 1e-8
+    assert "4 modes" in repr(found)
+
+
+def test_components_are_held_or_free():
+    stewart = cy.load("stewart")
+    over = {"x": (-0.1, 0.1, 3), "y": (-0.1, 0.1, 3)}
+    found = cy.workspace_map(stewart, over, at={"z": 1.05}, free=["yaw"], loci=False, starts=4)
+    assert found.free_motions == 1 and found.held["z"] == 1.05 and "yaw" not in found.held
+    assert found.loci == []
+    found = cy.workspace_map(stewart, over, frame="platform", q=stewart.home, starts=1, seed=3)
+    assert found.free_motions == 0 and list(found.held)[0] == "z"
+
+
+def test_input_is_checked():
+    robot = cy.load("five-bar")
+    good = {"x": (0, 1, 3)}
+    for call, kind in [
+        (lambda: cy.workspace_map(robot, {}), cy.InvalidOptionError),
+        (lambda: cy.workspace_map(robot, {"w": (0, 1, 3)}), cy.UnknownNameError),
+        (lambda: cy.workspace_map(robot, {"x": (1, 0, 3)}), cy.InvalidOptionError),
+        (lambda: cy.workspace_map(robot, {"x": (0, np.nan, 3)}), cy.NotFiniteError),
+        (lambda: cy.workspace_map(robot, good, at={"x": 1.0}), cy.InvalidOptionError),
+        (lambda: cy.workspace_map(robot, good, free=["x"]), cy.InvalidOptionError),
+        (lambda: cy.workspace_map(robot, good, q=[0.0]), cy.DimensionError),
+        (lambda: cy.workspace_map(robot, good, starts=0), cy.InvalidOptionError),
+    ]:
+        with pytest.raises(kind):
+            call()
+
+
+def test_a_mode_is_drawn(found):
+    pytest.importorskip("matplotlib")
+    ax = cy.plot.map(found, mode=1)
+    assert ax.get_xlabel() == "x (m)" and len(ax.get_lines()) >= 1
+    with pytest.raises(ValueError, match="mode"):
+        cy.plot.map(found, mode=9)
+    line = cy.workspace_map(cy.load("five-bar"), {"x": (0.5, 1.5, 3)}, at={"y": 1.5})
+    with pytest.raises(ValueError, match="axes"):
+        cy.plot.map(line)

@@ -1,0 +1,111 @@
+//! Maps: the workspace of a mechanism in the coordinates of its platform, for each working mode, with
+//! the loci of its singularities.
+//!
+//! Read in this order: `options`, `problem` (what is prescribed, what is singular), `grid`, `flood`
+//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves).
+//!
+//! ```
+//! use cylindroid::sweep::{Axis, LocusKind, Map, MapOptions};
+//!
+//! // Where the coupler of a five-bar gets, in steps of a quarter of a metre.
+//! let five_bar = cylindroid::load("five-bar")?;
+//! let axis = |name: &str, from, to, count| Axis { name: name.to_owned(), from, to, count };
+//! let axes = vec![axis("x", -1.0, 3.0, 17), axis("y", 0.0, 3.0, 13)];
+//! let map = Map::of(&five_bar, MapOptions { axes, ..MapOptions::default() })?;
+//! assert_eq!(map.modes.len(), 4);
+//! assert!(map.loci.iter().any(|locus| locus.kind == LocusKind::TypeOne));
+//! # Ok::<(), cylindroid::Error>(())
+//! ```
+//!
+//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/options.rs
+
+mod flood;
+mod grid;
+mod loci;
+mod modes;
+mod options;
+mod problem;
+mod result;
+
+pub use options::MapOptions;
+pub use result::{Locus, LocusKind, WorkingMode};
+
+use self::grid::Grid;
+use self::problem::Problem;
+use self::result::working_mode;
+use super::Axis;
+use crate::error::Result;
+use crate::model::Mechanism;
+
+/// The workspace of a mechanism over components of its platform's pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map {
+    /// The axes, the last of which changes fastest.
+    pub axes: Vec<Axis>,
+    /// Components that keep a value (m or rad).
+    pub held: Vec<(String, f64)>,
+    /// Motions that axes and held components leave: with some, modes are not distinguished,
+    /// configurations are one of many, and there are no loci.
+    pub free_motions: usize,
+    /// Whether the distances to singularities of type I and II have a sign.
+    pub signed: [bool; 2],
+    /// The working modes, in the order in which they were found.
+    pub modes: Vec<WorkingMode>,
+    /// Curves of singularities and of limits, for two axes.
+    pub loci: Vec<Locus>,
+    grid_cells: usize,
+}
+
+impl Map {
+    /// The map of a mechanism.
+    ///
+    /// # Errors
+    /// An unknown or repeated component, axes without values or in descending order, more than 2^22
+    /// cells, a start of the wrong size, values that are not finite, a frame of another mechanism.
+    #[doc(alias = "workspace")]
+    #[doc(alias = "singularity locus")]
+    pub fn of(mechanism: &Mechanism, options: MapOptions) -> Result<Self> {
+        let cells = options.cells()?;
+        let problem = Problem::new(mechanism, &options)?;
+        let grid = Grid::new(&options.axes);
+        let modes = modes::modes(&problem, &grid, &options)?;
+        let free_motions = problem.free_motions();
+        let curves = options.loci
+            && free_motions == 0
+            && options.axes.len() == 2
+            && options.axes.iter().all(|axis| axis.count > 1);
+        let loci =
+            if curves { loci::loci(&problem, &grid, &options.axes, &modes)? } else { Vec::new() };
+        let name = |i: usize| {
+            let named = problem.components.iter().find(|(_, place)| *place == i);
+            named.map_or_else(String::new, |(name, _)| (*name).to_owned())
+        };
+        Ok(Self {
+            held: problem.held.iter().map(|(i, value)| (name(*i), *value)).collect(),
+            free_motions,
+            signed: [problem.type_one.is_signed(), problem.type_two.is_signed()],
+            modes: modes.into_iter().map(|mode| working_mode(mechanism, mode)).collect(),
+            loci,
+            axes: options.axes,
+            grid_cells: cells,
+        })
+    }
+
+    /// Number of cells of the grid.
+    #[must_use]
+    pub const fn cells(&self) -> usize {
+        self.grid_cells
+    }
+
+    /// The unit of a component: "m" of x, y and z, otherwise "rad".
+    #[must_use]
+    pub fn unit(component: &str) -> &'static str {
+        if matches!(component, "x" | "y" | "z") { "m" } else { "rad" }
+    }
+
+    /// The values of the axes at a cell.
+    #[must_use]
+    pub fn values(&self, cell: usize) -> Vec<f64> {
+        Grid::new(&self.axes).values(cell)
+    }
+}

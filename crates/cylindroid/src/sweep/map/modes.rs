@@ -1,0 +1,77 @@
+//! The working modes of a map: assemblies at some cells, each followed over the grid.
+//!
+//! Method   random restarts with the platform at a cell: many at the cell of the start, few at others,
+//!          spread evenly over the grid; a configuration that no mode has at its cell begins a new one.
+//!          Then cells beside the reached ones, from the configurations there
+//! Valid    any mechanism. Modes may be missed if they fill few cells; the number of starts finds more
+//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs
+
+use super::flood::{Flooded, flood};
+use super::grid::Grid;
+use super::options::MapOptions;
+use super::problem::Problem;
+use crate::closure::{
+    Landmarks, ModeOptions, PlatformPath, assembly_modes, link_poses, signature_distance,
+};
+use crate::error::Result;
+use crate::tolerance::SAME_ASSEMBLY;
+
+/// Further cells in which restarts look for modes, and the restarts of each.
+const CELLS: usize = 32;
+const STARTS: usize = 6;
+/// Largest number of modes.
+const MAX_MODES: usize = 64;
+
+/// All modes found.
+pub(super) fn modes(problem: &Problem, grid: &Grid, options: &MapOptions) -> Result<Vec<Flooded>> {
+    let mechanism = &problem.platform.mechanism;
+    let landmarks = Landmarks::of(mechanism);
+    let places =
+        |q: &[f64]| -> Result<Vec<_>> { Ok(landmarks.at(&link_poses(&mechanism.state(q)?))) };
+    let prescribed = problem.prescribed();
+    let mut path = PlatformPath::new(
+        problem.equations.clone(),
+        problem.axes.clone(),
+        problem.type_one.clone(),
+    );
+    let at_start: Vec<f64> = problem.axes.iter().map(|&i| problem.start[i]).collect();
+    let first = grid.nearest(&at_start);
+    let mut modes: Vec<Flooded> = Vec::new();
+    let mut looked = Vec::new();
+    for number in 0..=CELLS {
+        let cell = if number == 0 { first } else { grid.spread(number) };
+        if looked.contains(&cell) {
+            continue;
+        }
+        looked.push(cell);
+        let mut guess = problem.start.clone();
+        for (&i, value) in problem.axes.iter().zip(grid.values(cell)) {
+            guess[i] = value;
+        }
+        for &(i, value) in &problem.held {
+            guess[i] = value;
+        }
+        let starts = if number == 0 { options.starts } else { STARTS };
+        let search = ModeOptions { starts, seed: options.seed.wrapping_add(number as u64) };
+        let found = assembly_modes(mechanism, &guess, &prescribed, search)?;
+        for mode in &found.modes {
+            let q = &mode.assembly.q;
+            if modes.len() >= MAX_MODES || mechanism.outside_limits(q).next().is_some() {
+                continue;
+            }
+            let here = places(q)?;
+            let mut known = false;
+            for other in &modes {
+                if let Some(there) = other.at(cell) {
+                    // With motions left, all configurations of a cell are one.
+                    known |= problem.free_motions() > 0
+                        || signature_distance(&here, &places(there)?, |_| true) <= SAME_ASSEMBLY;
+                }
+            }
+            if !known {
+                modes.push(flood(problem, grid, &mut path, (cell, q))?);
+            }
+        }
+    }
+    Ok(modes)
+}

@@ -1,0 +1,120 @@
+//! What maps take and refuse; serial arms and spatial platforms.
+
+use cylindroid::sweep::{LocusKind, Map, MapOptions};
+use cylindroid::{Mechanism, catalogue};
+
+use crate::five_bar::{axis, map};
+use crate::robots::{five_bar, three_rpr};
+
+fn refused(mechanism: &Mechanism, options: MapOptions) -> String {
+    Map::of(mechanism, options).unwrap_err().to_string()
+}
+
+/// The workspace of a planar arm is a ring.
+#[test]
+fn a_serial_arm_has_a_ring() {
+    let arm = catalogue::load("3r").unwrap();
+    let map = map(&arm, vec![axis("x", -3.03, 3.01, 25), axis("y", -3.01, 3.07, 25)]);
+    assert!(!map.modes.is_empty() && map.free_motions == 0, "{:?}", map.held);
+    for locus in map.loci.iter().filter(|l| l.kind == LocusKind::TypeOne) {
+        for q in &locus.q {
+            let jacobian =
+                arm.state(q).unwrap().jacobian(arm.tool(), cylindroid::ReferenceFrame::World);
+            let rows = cylindroid::Matrix::from_fn(3, 3, |i, j| jacobian[([0, 1, 5][i], j)]);
+            let svd = cylindroid::linalg::Svd::of(&rows);
+            assert!(svd.value(2) < 1e-8, "{}", svd.value(2));
+        }
+    }
+}
+
+/// A horizontal slice of a Stewart platform: everything else is held.
+#[test]
+fn a_stewart_platform_keeps_its_height() {
+    let stewart = catalogue::load("stewart").unwrap();
+    let map = map(&stewart, vec![axis("x", -0.3, 0.3, 7), axis("y", -0.3, 0.3, 7)]);
+    assert_eq!(map.free_motions, 0);
+    let names: Vec<&str> = map.held.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["z", "yaw", "pitch", "roll"]);
+    assert_eq!(map.signed, [true, true]);
+    let mode = &map.modes[0];
+    assert!(mode.cells() > 5);
+    let n = stewart.n();
+    for cell in (0..map.cells()).filter(|&cell| mode.reached[cell]) {
+        let q = &mode.q[cell * n..(cell + 1) * n];
+        let pose = stewart.state(q).unwrap().pose(stewart.reference()).translation;
+        let expected = map.values(cell);
+        assert!((pose.x - expected[0]).abs() < 1e-9 && (pose.y - expected[1]).abs() < 1e-9);
+        assert!((pose.z - 1.0).abs() < 1e-9 && mode.limit_distance[cell] > -1e-9);
+    }
+}
+
+/// A redundant arm has one mode without curves, and says so.
+#[test]
+fn a_redundant_arm_has_free_motions() {
+    let panda = catalogue::load("panda").unwrap();
+    let map = map(&panda, vec![axis("x", 0.2, 0.7, 6), axis("z", 0.2, 0.8, 5)]);
+    assert_eq!((map.free_motions, map.signed[0]), (1, false));
+    assert!(map.loci.is_empty() && map.modes[0].cells() > 10);
+}
+
+#[test]
+fn options_are_checked() {
+    let five_bar = five_bar();
+    let with = |axes| MapOptions { axes, ..MapOptions::default() };
+    let xy = || vec![axis("x", -1.0, 1.0, 5), axis("y", 1.0, 2.0, 5)];
+    assert!(refused(&five_bar, with(Vec::new())).contains("one, two or three"));
+    let unknown = refused(&five_bar, with(vec![axis("z", 0.0, 1.0, 3)]));
+    assert!(unknown.contains('z') && unknown.contains("rz"), "{unknown}");
+    assert!(refused(&five_bar, with(vec![axis("x", 0.0, 1.0, 0)])).contains("one value"));
+    assert!(refused(&five_bar, with(vec![axis("x", 1.0, 0.0, 3)])).contains("smaller"));
+    assert!(refused(&five_bar, with(vec![axis("x", 0.0, f64::NAN, 3)])).contains('x'));
+    let large = with(vec![axis("x", 0.0, 1.0, 1 << 40), axis("y", 0.0, 1.0, 1 << 40)]);
+    assert!(refused(&five_bar, large).contains("cells"));
+    let twice = with(vec![axis("x", 0.0, 1.0, 2), axis("x", 0.0, 1.0, 2)]);
+    assert!(refused(&five_bar, twice).contains("once"));
+    let held =
+        |name: &str, value| MapOptions { held: vec![(name.to_owned(), value)], ..with(xy()) };
+    assert!(refused(&five_bar, held("x", Some(1.0))).contains("once"));
+    assert!(refused(&five_bar, held("rz", Some(f64::INFINITY))).contains("rz"));
+    assert!(refused(&five_bar, held("roll", None)).contains("roll"));
+    let start = MapOptions { start: Some(vec![0.0]), ..with(xy()) };
+    assert!(Map::of(&five_bar, start).is_err());
+    assert!(refused(&five_bar, MapOptions { starts: 0, ..with(xy()) }).contains("starts"));
+    let panda = catalogue::load("panda").unwrap();
+    let other = MapOptions { end_effector: Some(panda.tool().into()), ..with(xy()) };
+    assert!(Map::of(&five_bar, other).is_err());
+    // Nothing is there, which is a value.
+    let far = with(vec![axis("x", 20.0, 21.0, 3), axis("y", 20.0, 21.0, 3)]);
+    assert!(Map::of(&five_bar, far).unwrap().modes.is_empty());
+}
+
+/// Limits end the workspace, and each point of such a curve has a leg at its limit.
+#[test]
+fn limits_have_curves() {
+    let base = [[-1.0, -0.8], [1.2, -0.7], [0.1, 1.3]];
+    let platform = [[-0.4, -0.2], [0.5, -0.3], [0.1, 0.4]];
+    let mechanism = three_rpr(base, platform, "limits = { lower = -0.3, upper = 0.4 }");
+    let axes = vec![axis("x", -1.0, 1.0, 41), axis("y", -1.0, 1.0, 41)];
+    let map = map(&mechanism, axes);
+    let limits: Vec<_> = map.loci.iter().filter(|l| l.kind == LocusKind::Limit).collect();
+    assert!(limits.len() >= 3, "{}", limits.len());
+    for locus in limits {
+        let name = locus.limit.as_ref().unwrap();
+        let leg = crate::robots::place(&mechanism, name);
+        for q in &locus.q {
+            assert!((q[leg] + 0.3).abs().min((q[leg] - 0.4).abs()) < 1e-9);
+        }
+    }
+    let one = &map.modes[0];
+    for cell in 0..map.cells() {
+        let p = map.values(cell);
+        let lengths = [0, 1, 2].map(|i: usize| {
+            let ([ax, ay], [bx, by]) = (base[i], platform[i]);
+            (p[0] + bx - ax).hypot(p[1] + by - ay) - (bx - ax).hypot(by - ay)
+        });
+        let slack = lengths.iter().map(|l| (l + 0.3).min(0.4 - l)).fold(f64::INFINITY, f64::min);
+        if slack.abs() > 1e-6 {
+            assert_eq!(one.reached[cell], slack > 0.0, "{p:?} {slack}");
+        }
+    }
+}
