@@ -221,6 +221,16 @@ pub(crate) fn figures() -> Result<()> {
             "--plot",
             "docs/ellipses-five-bar.svg",
         ],
+        &[
+            "map",
+            "docs/five-bar.toml",
+            "--over",
+            "x=-1:3.5:120",
+            "--over",
+            "y=-2.6:2.6:120",
+            "--plot",
+            "docs/map-five-bar.svg",
+        ],
     ] {
         let run_it = ["run", "--release", "--quiet", "--package", "cylindroid-cli", "--"];
         run(&mut cargo(&[&run_it, command].concat()))?;
