@@ -1,14 +1,13 @@
 //! The arguments of `map`.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-use super::FrameArgs;
 use super::sweep::AxisArg;
-use crate::values::Joints;
+use super::{FrameArgs, ModelArgs};
+use crate::values::{Assignment, Joints};
 
 pub(crate) const ABOUT: &str = "\
 The workspace over components of the platform's pose, for each working mode, with singularity loci
@@ -26,7 +25,7 @@ Exit code 0 if a mode is found, 1 if not, 2 on an error.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
-  cylindroid map five-bar --over x=-1:3:200 --over y=-1:3:200 --plot map.svg
+  cylindroid map five-bar --actuated q1,q5 --over x=-1:3:200 --over y=-1:3:200 --plot map.svg
   cylindroid map 3rrr --over x=-0.4:0.4:81 --over y=-0.4:0.4:81 --at rz=0.2 --out map.csv
   cylindroid map stewart --over x=-0.4:0.4:41 --over y=-0.4:0.4:41 --at z=1.1
   cylindroid map panda --over x=0:0.8:41 --over z=0:1:51 --free yaw
@@ -35,8 +34,12 @@ Components: x, y, z [m], roll, pitch, yaw [rad, R = Rz(yaw) Ry(pitch) Rx(roll)];
 
 #[derive(Debug, Args)]
 pub(crate) struct MapArgs {
-    /// Model file or catalogue name
-    pub(crate) model: String,
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+
+    /// The actuated joints, replacing those of the file
+    #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
+    pub(crate) actuated: Vec<String>,
 
     /// An axis [m or rad]: a component, its first and last value and the number of values; one, two
     /// or three of them, of which the last changes fastest
@@ -45,7 +48,7 @@ pub(crate) struct MapArgs {
 
     /// The value of another component [m or rad]; repeat for further ones
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
-    pub(crate) at: Vec<ValueArg>,
+    pub(crate) at: Vec<Assignment>,
 
     /// A component that may have any value; repeat for further ones
     #[arg(long, value_name = "NAME")]
@@ -79,19 +82,4 @@ pub(crate) struct MapArgs {
     /// Draw two axes as an SVG, a panel for each mode
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
-}
-
-/// `NAME=VALUE`.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ValueArg(pub(crate) String, pub(crate) f64);
-
-impl FromStr for ValueArg {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("'{text}' is not of the form name=value");
-        let (name, value) = text.rsplit_once('=').ok_or_else(wrong)?;
-        let value = value.trim().parse().map_err(|_| wrong())?;
-        Ok(Self(name.trim().to_owned(), value))
-    }
 }

@@ -44,6 +44,16 @@ fn a_five_bar() {
     assert!(text(&OVER).contains("working modes"));
 }
 
+/// Other drives: the one on the ground closes the loop, and has type II nevertheless.
+#[test]
+fn other_drives() {
+    let command = [&OVER[..], &["--actuated", "q1,q5"]].concat();
+    let report = json(&command, 0);
+    let kinds: Vec<&Value> =
+        report["loci"].as_array().unwrap().iter().map(|l| &l["kind"]).collect();
+    assert!(kinds.contains(&&"type II".into()) && !kinds.contains(&&"passive".into()), "{kinds:?}");
+}
+
 /// Held, free and given components.
 #[test]
 fn components() {
@@ -78,5 +88,6 @@ fn what_is_wrong_is_named() {
     assert!(message.contains(".csv or .json"), "{message}");
     let message = refused(&["map", "five-bar", "--over", "x=0:1:1e9", "--over", "y=0:1:1e9"]);
     assert!(message.contains("cells"), "{message}");
-    assert!(refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "y"]).contains("name=value"));
+    let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "y"]);
+    assert!(message.contains("a name, = and a number"), "{message}");
 }

@@ -10,12 +10,12 @@ use cylindroid::sweep::{LocusKind, Map, MapOptions};
 
 use self::report::{MapJson, report};
 use crate::args::MapArgs;
-use crate::commands::shared::{Style, answer, reference_or_tool};
+use crate::commands::shared::{Style, answer, load, reference_or_tool};
 use crate::output::{self, Align, number};
 use crate::plot;
 
 pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
-    let robot = cylindroid::load(&args.model)?;
+    let robot = load(&args.model, &args.actuated)?;
     if let Some(path) = &args.plot {
         plot::check(path)?;
         plot::map::check(args.over.len())?;
@@ -24,7 +24,7 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
         file::check(path)?;
     }
     let frame = reference_or_tool(&robot, &args.frame)?;
-    let at = args.at.iter().map(|value| (value.0.clone(), Some(value.1)));
+    let at = args.at.iter().map(|at| (at.pair().0.to_owned(), Some(at.pair().1)));
     let free = args.free.iter().map(|name| (name.clone(), None));
     let map = Map::of(
         &robot,

@@ -18,10 +18,10 @@ pub(crate) mod initial_guesses;
 #[cfg(feature = "formats")]
 pub(crate) mod load;
 pub(crate) mod loop_closure;
-#[cfg(feature = "formats")]
-pub(crate) mod parametric_model;
 #[cfg(feature = "sweep")]
 pub(crate) mod loop_equations;
+#[cfg(feature = "formats")]
+pub(crate) mod parametric_model;
 pub(crate) mod platform;
 #[cfg(feature = "sweep")]
 pub(crate) mod platform_path;

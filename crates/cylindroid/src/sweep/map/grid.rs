@@ -31,15 +31,10 @@ impl Grid {
         places
     }
 
-    /// The values of the axes at a cell; the last one exactly.
+    /// The values of the axes at a cell.
     pub(super) fn values(&self, cell: usize) -> Vec<f64> {
         let places = self.places(cell);
-        let value = |(axis, place): (&Axis, usize)| match axis.count {
-            0 | 1 => axis.from,
-            count if place as u64 + 1 == count => axis.to,
-            count => axis.from + (axis.to - axis.from) * place as f64 / (count - 1) as f64,
-        };
-        self.axes.iter().zip(places).map(value).collect()
+        self.axes.iter().zip(places).map(|(axis, place)| axis.value(place as u64)).collect()
     }
 
     /// The neighbours of a cell along the axes.
