@@ -58,7 +58,7 @@ impl Inclusion<'_> {
 
 impl Mechanism {
     /// The link that is no child: the first of the tree.
-    pub(super) fn root(&self) -> usize {
+    pub(crate) fn root(&self) -> usize {
         let mut is_child = vec![false; self.links().len()];
         self.joints().iter().for_each(|j| is_child[j.child] = true);
         is_child.iter().position(|child| !child).unwrap_or(0)

@@ -18,7 +18,7 @@
 
 use crate::error::Result;
 use crate::kinematics::EndEffector;
-use crate::model::{Dimension, Inclusion, JointKind, JointSpec, LoopJointSpec, Mechanism};
+use crate::model::{Dimension, JointKind, JointSpec, LoopJointSpec, Mechanism};
 use crate::spatial::{Pose, Rotation, Rpy, Vec3};
 
 /// The rotations of the chain.
@@ -84,23 +84,8 @@ impl Platform {
     fn with_chain(&self, start: &[f64]) -> Result<Mechanism> {
         let inner = &self.inner;
         let prefix = unused_prefix(inner);
-        let root = inner.links().first().map_or("ground", |link| link.name.as_str());
-        let mut builder = Mechanism::builder(inner.name());
-        builder.dimension(inner.dimension());
-        if let Some(link) = inner.links().first() {
-            builder.link(link.clone());
-        }
-        builder.include(
-            inner,
-            Inclusion {
-                name: "",
-                parent: root,
-                parent_from_root: Pose::IDENTITY,
-                free: false,
-                start: inner.home(),
-            },
-        )?;
-        let mut parent = root.to_owned();
+        let mut builder = inner.copied(inner.home())?;
+        let mut parent = inner.links()[inner.root()].name.clone();
         let mut place = self.chain.world_from_zero;
         let mut from = 0;
         for (name, kind, axis) in self.chain.joints(inner.dimension()) {
