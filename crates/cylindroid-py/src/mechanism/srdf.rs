@@ -109,12 +109,13 @@ impl PySrdf {
     /// ------
     /// UnknownNameError, InvalidOptionError
     #[pyo3(signature = (group, robot))]
-    fn joints<'r>(
+    fn joints(
         &self,
         #[pyo3(from_py_with = argument)] group: &str,
-        robot: &'r Bound<'_, PyMechanism>,
-    ) -> Result<Vec<&'r str>> {
-        Ok(self.inner.joints_of(group, &robot.get().inner)?)
+        #[pyo3(from_py_with = argument)] robot: PyRef<'_, PyMechanism>,
+    ) -> Result<Vec<String>> {
+        let own = self.inner.joints_of(group, &robot.inner)?;
+        Ok(own.into_iter().map(str::to_owned).collect())
     }
 
     /// The mechanism of a group: its joints move, all others are fixed.
@@ -143,10 +144,9 @@ impl PySrdf {
     fn group(
         &self,
         #[pyo3(from_py_with = argument)] name: String,
-        robot: &Bound<'_, PyMechanism>,
+        #[pyo3(from_py_with = argument)] robot: PyRef<'_, PyMechanism>,
         q: Option<Numbers<'_>>,
     ) -> Result<PyMechanism> {
-        let robot = robot.get();
         let q = robot.or_home("q", q.as_ref())?.to_vec();
         let inner = self.inner.group(&name, &robot.inner, &q)?;
         let (srdf, of) = ((self.path.clone(), self.text.clone()), Box::new(robot.clone()));
@@ -178,10 +178,9 @@ impl PySrdf {
         &self,
         py: Python<'py>,
         #[pyo3(from_py_with = argument)] state: &str,
-        robot: &Bound<'py, PyMechanism>,
+        #[pyo3(from_py_with = argument)] robot: PyRef<'py, PyMechanism>,
         q: Option<Numbers<'_>>,
     ) -> Result<Bound<'py, PyArray1<f64>>> {
-        let robot = robot.get();
         let q = robot.or_home("q", q.as_ref())?;
         Ok(self.inner.configuration(state, &robot.inner, q)?.into_pyarray(py))
     }

@@ -19,7 +19,8 @@ use crate::spatial::Pose;
 
 impl Mechanism {
     /// The same mechanism with these joints of the tree fixed at their positions in `q`, and with them
-    /// the joints that follow them. The other positions of `q` become home.
+    /// the joints that follow them. The other positions of `q` become home; the loops of a closed chain
+    /// are closed there if they are at `q`.
     ///
     /// ```
     /// // The arm of a Panda whose fourth joint is locked.

@@ -29,6 +29,7 @@ pub(crate) enum PlatformRotation {
     /// About one axis, in the axes of the zero pose.
     About(Vec3),
     /// Yaw, pitch and roll; in the plane about z.
+    #[cfg_attr(not(feature = "sweep"), expect(dead_code, reason = "of maps"))]
     Angles,
     /// All, as a rotation vector; in the plane about z.
     Free,
@@ -139,11 +140,13 @@ impl Platform {
     }
 
     /// Number of coordinates without those of the platform.
+    #[cfg_attr(not(feature = "sweep"), expect(dead_code, reason = "of maps"))]
     pub(crate) fn n(&self) -> usize {
         self.inner.n()
     }
 
     /// The names of the platform's coordinates.
+    #[cfg_attr(not(feature = "sweep"), expect(dead_code, reason = "of maps"))]
     pub(crate) fn components(&self) -> Vec<&'static str> {
         let joints = self.chain.joints(self.inner.dimension());
         let names = joints.into_iter().flat_map(|(name, kind, _)| match kind {
