@@ -184,7 +184,7 @@ pub(crate) fn sweep<'py>(
         (None, false, None) if space.is_some() && rest.is_empty() => Source::Home,
         (None, false, None) if space.is_some() => Source::Configurations(rest),
         _ => {
-            let reason = "give one of samples, coordinates in over, and configurations";
+            let reason = "give one of samples, over and configurations";
             return Err(Failure::option("samples", "", reason));
         }
     };

@@ -168,6 +168,82 @@ fn isotropic_five_bars_are_found() {
     }
 }
 
+/// Three slides along a cone about z, whose rods make the angle `bend` with them, and a platform that
+/// does not turn: an Orthoglide where rods and slides are perpendicular to one another.
+fn orthoglide() -> ParametricModel {
+    let mut text = String::from(
+        "reference = 'platform'\nreference_point = [0, 0, 0]\n[parameters]\n\
+         cone = { value = 0.9, lower = 0.1, upper = 1.5, unit = 'rad' }\n\
+         bend = { value = 0.1, lower = -0.5, upper = 0.5, unit = 'rad' }\nrod = 'cone + bend'\n",
+    );
+    for i in 0..3 {
+        text += &format!("c{i} = 'cos({i} * 2 * pi / 3)'\ns{i} = 'sin({i} * 2 * pi / 3)'\n");
+    }
+    let mut joint = |name: String, kind: &str, between: [String; 2], more: &str| {
+        let [a, b] = between;
+        text += &format!("[[joint]]\nname = '{name}'\ntype = '{kind}'\n");
+        text += &format!("between = ['{a}', '{b}']\n{more}\n");
+    };
+    for i in 0..3 {
+        let link = |name: &str| format!("{name}{i}");
+        let slide = format!("['sin(cone) * c{i}', 'sin(cone) * s{i}', 'cos(cone)']");
+        let end = format!("['-sin(rod) * c{i}', '-sin(rod) * s{i}', '-cos(rod)']");
+        let more = format!("origin = {end}\naxis = {slide}\nactuated = true");
+        joint(link("drive"), "prismatic", ["ground".to_owned(), link("slide")], &more);
+        let (across, third) = (
+            format!("['-s{i}', 'c{i}', 0]"),
+            format!("['cos(rod) * c{i}', 'cos(rod) * s{i}', '-sin(rod)']"),
+        );
+        let more = format!("origin = {end}\naxis = {across}\naxis2 = {third}");
+        joint(link("cardan"), "universal", [link("slide"), link("rod")], &more);
+        let between = [link("rod"), "platform".to_owned()];
+        joint(link("ball"), "spherical", between, "origin = [0, 0, 0]");
+    }
+    let axes = ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"];
+    let links = ["ground", "along_x", "along_xy", "platform"].map(str::to_owned);
+    for (i, axis) in axes.iter().enumerate() {
+        let between = [links[i].clone(), links[i + 1].clone()];
+        let more = format!("origin = [0, 0, 0]\naxis = {axis}");
+        joint(format!("guide{i}"), "prismatic", between, &more);
+    }
+    ParametricModel::of_text(&text, Path::new("orthoglide.toml"), &[]).unwrap()
+}
+
+/// Rods w and slides d: w . v = (w . d) q', so the Jacobian is isotropic where the rods are
+/// perpendicular, and one metre of a slide is one metre of the platform where they lie along the
+/// slides (Wenger & Chablat 2000).
+#[test]
+fn the_isotropic_orthoglide_is_found() {
+    let right = (1.0 / 3.0_f64.sqrt()).acos();
+    let axes = [axis("cone", right - 0.3, right + 0.3, 13), axis("bend", -0.2, 0.2, 9)];
+    let measures = options(Source::Home, &[Quantity::Measures]);
+    let sweep = Sweep::of_designs(&orthoglide(), grid(&axes), measures).unwrap();
+    let table = sweep.table(0..sweep.rows()).unwrap();
+    let of = |name: &str| table.numbers(name).unwrap();
+    let [cone, bend, anisotropy, largest, smallest] =
+        ["cone", "bend", "anisotropy", "largest", "smallest"].map(of);
+    let mut isotropic = 0;
+    for i in 0..table.rows() {
+        let rod = cone[i] + bend[i];
+        let values = [3.0 * rod.cos().powi(2), 1.5 * rod.sin().powi(2)];
+        let expected = values[0].max(values[1]) / values[0].min(values[1]);
+        let found = (counts(&table, "design_valid")[i], counts(&table, "dof")[i]);
+        assert_eq!(found, (1, 3), "{i}");
+        assert!((anisotropy[i] / expected - 1.0).abs() < 1e-9, "{i}: {}", anisotropy[i]);
+        if anisotropy[i] < 1.0 + 1e-9 {
+            isotropic += 1;
+            let factor = bend[i].cos().powi(2);
+            assert!((rod - right).abs() < 1e-9 && (largest[i] - factor).abs() < 1e-9);
+        }
+    }
+    // The bends of the grid that a cone of the grid makes up for; with unit factor one of them.
+    assert_eq!(isotropic, 9);
+    let unit = |i: &usize| (largest[*i] - 1.0).abs() < 1e-9 && (smallest[*i] - 1.0).abs() < 1e-9;
+    let found: Vec<usize> = (0..table.rows()).filter(unit).collect();
+    assert_eq!(found.len(), 1);
+    assert!((cone[found[0]] - right).abs() < 1e-12 && bend[found[0]].abs() < 1e-12);
+}
+
 #[test]
 fn designs_without_a_mechanism_have_no_numbers() {
     let source = Source::Samples { count: 2, seed: 0 };
