@@ -42,16 +42,14 @@ fn the_locus_is_the_conic() {
                     .sum()
             })
             .collect();
-        let conic = |p: [f64; 2]| {
-            let terms = terms(p);
-            let sum: f64 = terms.iter().zip(&coefficients).map(|(a, b)| a * b).sum();
-            let size: f64 = terms.iter().zip(&coefficients).map(|(a, b)| (a * b).abs()).sum();
-            sum / size
+        let sum =
+            |p: [f64; 2]| -> f64 { terms(p).iter().zip(&coefficients).map(|(a, b)| a * b).sum() };
+        let size = |p: [f64; 2]| -> f64 {
+            terms(p).iter().zip(&coefficients).map(|(a, b)| (a * b).abs()).sum()
         };
-        assert!(
-            (conic([0.3, -0.6]) - 0.0).abs() > 1e-6 || determinant([0.3, -0.6], turn).abs() < 1e-6
-        );
-        let mechanism = three_rpr(BASE, PLATFORM, "limits = { lower = -1.2, upper = 4.0 }");
+        let conic = |p: [f64; 2]| sum(p) / size(p);
+        assert!((sum([0.3, -0.6]) - determinant([0.3, -0.6], turn)).abs() < 1e-12);
+        let mechanism = three_rpr(BASE, PLATFORM, "limits = { lower = -0.75, upper = 4.0 }");
         let map = Map::of(
             &mechanism,
             MapOptions {
