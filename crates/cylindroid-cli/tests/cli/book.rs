@@ -177,9 +177,12 @@ fn commands_run_and_print_what_the_pages_show() {
         let lines: Vec<&str> = text.lines().collect();
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("docs")).unwrap();
-        for model in ["grasp", "cell", "tasks", "goals", "designs"] {
-            let model = format!("docs/{model}.toml");
-            fs::copy(Path::new(ROOT).join(&model), folder.path().join(&model)).unwrap();
+        for entry in fs::read_dir(Path::new(ROOT).join("docs")).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|e| e == "toml") {
+                let copy = folder.path().join("docs").join(path.file_name().unwrap());
+                fs::copy(&path, copy).unwrap();
+            }
         }
         let found = blocks(&lines);
         let mut written = Vec::new();
