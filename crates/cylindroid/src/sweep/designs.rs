@@ -220,7 +220,7 @@ impl Designs {
         let (index, rest) =
             self.columns.split_first().map_or((None, &[][..]), |(i, r)| (Some(i), r));
         let design = Column::count("design", "place of the design, from 0");
-        let valid = Column::count("design_valid", "1 if the design has a mechanism, else 0");
+        let valid = Column::count("design_valid", "1 if the design has a mechanism, otherwise 0");
         let own = index.cloned().into_iter().chain(once(design)).chain(once(valid));
         own.chain(parameters).chain(rest.iter().cloned()).collect()
     }
