@@ -367,8 +367,10 @@ fn bad_requests_are_named() {
     assert!(error.contains("goals"), "{error}");
     let stewart = catalogue::load("stewart").unwrap();
     let goal = Goal::pose(stewart.reference(), Pose::IDENTITY);
-    let error = solve(&stewart, &[goal], &options).unwrap_err().to_string();
+    let error = Solver::new(&stewart, &[goal], &options).unwrap_err().to_string();
     assert!(error.contains("loops"), "{error}");
+    let error = solve(&stewart, &[goal, goal], &options).unwrap_err().to_string();
+    assert!(error.contains("one frame"), "{error}");
     // A frame that nothing moves: reached where it is, else not.
     let base = panda.frame("base").unwrap();
     let here = panda.state(panda.home()).unwrap().pose(base);
