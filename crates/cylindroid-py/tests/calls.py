@@ -41,6 +41,7 @@ SRDF = """<robot name="panda">
 <group_state name="up" group="forearm"><joint name="panda_joint6" value="1.0"/></group_state>
 <end_effector name="grip" parent_link="link7" group="hand" parent_group="forearm"/>
 <disable_collisions link1="link1" link2="link2" reason="Adjacent"/></robot>"""
+PLANAR = cy.load("3rrr")
 GROUPS = cy.Srdf("panda.srdf", SRDF)
 POSE = PANDA.fk(PANDA.home)
 NEAR = PANDA.fk(PANDA.home + 0.05)
@@ -314,6 +315,10 @@ def calls():
          {"J": J, "task": TWIST, "max_joint_velocity": 0.5}),
         ("transversals", cy.transversals, {"lines": LINES_AS_COLUMNS, **SPACE}),
         ("velocity_conversion", cy.velocity_conversion, {"b_from_a": POSE}),
+        ("workspace_map", cy.workspace_map,
+         {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
+          "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,
+          "loci": False}),
         ("Srdf", cy.Srdf, {"path": "panda.srdf", "text": SRDF}),
         ("Srdf.joints", GROUPS.joints, {"group": "forearm", "robot": PANDA}),
         ("Srdf.group", GROUPS.group, {"name": "forearm", "robot": PANDA, "q": PANDA.home}),

@@ -178,6 +178,11 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             let some = ["youbot", "--samples", "50"];
             vec![with(&some, &["--quantities", "pose,gibson_hunt"]), with(&some, &["--out", FILE])]
         }
+        // A limit that ends a mode has a key of its own.
+        "map" => vec![
+            vec!["five-bar", "--over", "x=0:2:5", "--over", "y=0.5:2.5:5"],
+            vec!["stewart", "--over", "x=-1:1:9", "--over", "y=-1:1:9"],
+        ],
         "grasp" => vec![vec![GRASP, "--torsion", "0.01"]],
         _ => vec![vec![]],
     };

@@ -77,7 +77,8 @@ fn what_cannot_be_reached() {
     assert!(far["out_of_reach"]["distance"].as_f64() > far["out_of_reach"]["length"].as_f64());
     assert_eq!(numbers(&far["q"]).len(), 7);
     assert_eq!(far["reason"]["kind"], "out of reach");
-    assert!(refused(&["ik", "stewart", "--to", "0,0,1"]).contains("loops"));
+    let platform = json(&["ik", "stewart", "--to", "0,0,1"], 0);
+    assert_eq!(platform["success"], true);
 }
 
 #[test]

@@ -139,7 +139,8 @@ fn what_cannot_be_swept_is_refused() {
     let with = |more: &[&str]| refused(&[&some[..], more].concat());
     assert!(with(&["--quantities", "poze"]).contains("--quantities: no quantity named 'poze'"));
     assert!(with(&["--task", "w"]).contains("--task: no task or task component named 'w'"));
-    assert!(with(&["--over", "a=0:1:2"]).contains("cannot be used with"));
+    assert!(with(&["--over", "a=0:1:2"]).contains("--over: no coordinate named 'a'"));
+    assert!(with(&["--over", "panda_joint1=0:1:2"]).contains("--samples"));
     assert!(with(&["--resume"]).contains("--out"));
     text(&[&some[..], &["--out", out]].concat());
     assert!(with(&["--out", out]).contains("it has a sweep already"));

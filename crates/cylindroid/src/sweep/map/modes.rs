@@ -14,7 +14,7 @@ use crate::closure::{
     Landmarks, ModeOptions, PlatformPath, assembly_modes, link_poses, signature_distance,
 };
 use crate::error::Result;
-use crate::tolerance::SAME_ASSEMBLY;
+use crate::tolerance::{PLATFORM_SINGULAR, SAME_ASSEMBLY};
 
 /// Further cells in which restarts look for modes, and the restarts of each.
 const CELLS: usize = 32;
@@ -68,6 +68,9 @@ pub(super) fn modes(problem: &Problem, grid: &Grid, options: &MapOptions) -> Res
                         || signature_distance(&here, &places(there)?, |_| true) <= SAME_ASSEMBLY;
                 }
             }
+            // Where modes meet, none of them begins.
+            let node = path.node(q)?;
+            known |= path.by_free.distance(&node.svd) < PLATFORM_SINGULAR;
             if !known {
                 modes.push(flood(problem, grid, &mut path, (cell, q))?);
             }
