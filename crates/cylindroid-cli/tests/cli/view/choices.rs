@@ -231,6 +231,13 @@ fn ellipsoids_and_screws_are_those_of_the_commands() {
     for (overlay, key) in on.iter().zip(["kinematic", "active_force", "passive_force"]) {
         let axes = state["overlays"][*overlay]["axes"].as_array().unwrap();
         let squares: Vec<f64> = axes.iter().map(|a| a["size"].as_f64().unwrap().powi(2)).collect();
+        // One scale for all, so that the drawing has the shape of the ellipsoid.
+        let scale = state["overlays"][*overlay]["scale"].as_f64().unwrap();
+        for axis in axes {
+            let drawn = numbers(&axis["vector"]).iter().map(|x| x * x).sum::<f64>().sqrt();
+            let expected = scale * axis["size"].as_f64().unwrap();
+            assert!((drawn - expected).abs() < 1e-12 * expected, "{overlay}: {axis}");
+        }
         let finite = numbers(&printed[key]["finite"]);
         assert_eq!(squares.len(), finite.len(), "{overlay}");
         for (a, b) in squares.iter().zip(&finite) {
