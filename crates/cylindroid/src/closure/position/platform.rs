@@ -72,8 +72,9 @@ impl Platform {
         let mut tool = end_effector;
         if planar {
             let turned = home.pose(end_effector).rotation;
-            tool.frame_from_tool.rotation =
-                tool.frame_from_tool.rotation * turned.inverse() * Rotation::about_z(yaw(turned));
+            tool.frame_from_tool.rotation = tool.frame_from_tool.rotation
+                * turned.inverse()
+                * Rotation::about_z(Rpy::of(turned).yaw);
         }
         let chain = if planar { chain.in_plane() } else { chain };
         let inner = mechanism.clone();
@@ -173,7 +174,10 @@ impl PlatformChain {
         let [x, y, _] = self.slides;
         let zero = self.world_from_zero;
         Self {
-            world_from_zero: Pose { rotation: Rotation::about_z(yaw(zero.rotation)), ..zero },
+            world_from_zero: Pose {
+                rotation: Rotation::about_z(Rpy::of(zero.rotation).yaw),
+                ..zero
+            },
             slides: [x, y, false],
             rotation: match self.rotation {
                 PlatformRotation::Fixed => PlatformRotation::Fixed,
@@ -203,12 +207,6 @@ impl PlatformChain {
         }
         all
     }
-}
-
-/// The angle of the x axis in the plane.
-fn yaw(rotation: Rotation) -> f64 {
-    let x = rotation.x_axis();
-    x.y.atan2(x.x)
 }
 
 /// A prefix that no name of the mechanism has.

@@ -92,8 +92,7 @@ impl SignedSingularity {
 
     /// s, of the block and its decomposition; infinite if the generic rank is zero.
     pub(crate) fn value(&self, block: &Matrix, svd: &Svd) -> f64 {
-        let sign = if self.is_signed() { self.sign(block) } else { 1.0 };
-        sign * self.distance(svd)
+        self.sign(block) * self.distance(svd)
     }
 
     /// The absolute value of s.
