@@ -1,6 +1,6 @@
 /** Makes elements: `h("button", { class: "x", onclick: f }, "text", child)`. */
 
-type Child = Node | string | number | null | undefined | false;
+export type Child = Node | string | number | null | undefined | false;
 type Props = Record<string, unknown>;
 
 export function h<K extends keyof HTMLElementTagNameMap>(
@@ -50,6 +50,22 @@ function append(element: Element, children: Child[]): void {
 export function fill(element: Element, ...children: Child[]): void {
   element.replaceChildren();
   append(element, children);
+}
+
+/** Fills an element again only where what its nodes are made from has changed: nodes keep focus and what is typed. */
+export class Kept {
+  private from = "";
+
+  constructor(private readonly element: Element) {}
+
+  /** True where it was filled. */
+  fill(from: unknown, make: () => Child[]): boolean {
+    const now = JSON.stringify(from);
+    if (now === this.from) return false;
+    this.from = now;
+    fill(this.element, ...make());
+    return true;
+  }
 }
 
 /** Sets text only where it changed: browsers lay out again otherwise. */

@@ -23,7 +23,10 @@ export function layout(root: HTMLElement): Layout {
   root.append(h("div", { class: "shell" }, bar, left, stage, right));
   const toast = (words: string, bad = false, key = words): void => {
     [...toasts.children].find((child) => child.getAttribute("data-key") === key)?.remove();
-    const close = h("button", { type: "button", "aria-label": "Close", onclick: () => made.remove() }, "×");
+    const close = h("button", { type: "button", "aria-label": "Close", onclick: () => {
+      made.remove();
+      (toasts.querySelector("button") ?? stage.querySelector("canvas"))?.focus();
+    } }, "×");
     const made = h("div", { class: bad ? "toast bad" : "toast", "data-key": key }, h("span", {}, words), close);
     toasts.append(made);
     while (toasts.children.length > MOST_TOASTS) toasts.firstElementChild?.remove();

@@ -93,6 +93,8 @@ function start(): void {
   reports.watch("manipulability", capability);
   page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element);
   page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
+  // A folded panel is not kept up to date.
+  for (const { onToggle } of [joints.panel, servo.panel, obstaclePanel.panel, pose, singular]) onToggle(redraw);
   stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group);
 
   const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
@@ -205,6 +207,8 @@ function start(): void {
     bar.recorded(recorder.recording, recorder.length);
   });
   session.on("failure", ({ reply_to, message, culprit, place }) => {
+    // Controls show what is in effect, not what was refused.
+    if (session.scene) for (const controls of [joints, servo]) controls.build(session.scene);
     if (!reports.owns(reply_to) && !compare.owns(reply_to)) page.toast(message, true, `${place} ${culprit}`);
   });
   const banner = new LinkBanner(page.banner, () => session.retry());

@@ -1,5 +1,5 @@
 /** A slider for each coordinate, with limits and unit; and for closed chains a switch for each joint that can be actuated. */
-import { fill, h } from "../dom";
+import { h, Kept, type Child } from "../dom";
 import { fixed, plain } from "../format";
 import { panel } from "../panels/panel";
 import type { Coordinate, Actuator, Scene, State } from "../protocol";
@@ -10,13 +10,18 @@ const FREE_TURN = Math.PI;
 /** A slider that was touched is not moved by states for a while (ms). */
 const QUIET = 300;
 
+/** More coordinates than these of a closed chain are folded away where they are passive at the start. */
+const MANY = 12;
+
 type Row = { element: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; touched: number };
 
 export class Joints {
   readonly panel = panel("joints", "Joints", true);
   private readonly list = h("div", {});
   private readonly selfMotion = h("div", {});
+  private readonly kept = { list: new Kept(this.list), selfMotion: new Kept(this.selfMotion) };
   private rows: Row[] = [];
+  private readonly actuators = new Map<string, HTMLInputElement>();
   private selfSlider: HTMLInputElement | null = null;
   private timer = 0;
 
@@ -25,8 +30,24 @@ export class Joints {
   }
 
   build(scene: Scene): void {
+    const fixedParts = scene.coordinates.map(({ actuated: _, adjustable: __, ...rest }) => rest);
+    this.kept.list.fill([scene.name, fixedParts, scene.actuators.map(({ name }) => name)], () => this.rowsOf(scene));
+    scene.coordinates.forEach(({ adjustable }, i) => {
+      const row = this.rows[i];
+      if (row) row.slider.disabled = row.field.disabled = !adjustable;
+    });
+    for (const { name, actuated } of scene.actuators) {
+      const box = this.actuators.get(name);
+      if (box) box.checked = actuated;
+    }
+    this.panel.note(`${scene.coordinates.length} coordinates`);
+    this.kept.selfMotion.fill(scene.self_motions, () => this.selfMotionParts(scene));
+  }
+
+  private rowsOf(scene: Scene): Child[] {
     const actuators = new Map(scene.actuators.map((actuator) => [actuator.name, actuator]));
     const placed = new Set<string>();
+    this.actuators.clear();
     this.rows = scene.coordinates.map((coordinate) => {
       const joint = scene.joints[coordinate.joint]?.name ?? coordinate.name;
       const actuator = placed.has(joint) ? undefined : actuators.get(joint);
@@ -34,25 +55,20 @@ export class Joints {
       return this.row(scene, coordinate, actuator);
     });
     const closing = scene.actuators.filter((actuator) => !placed.has(actuator.name));
-    const split = scene.closed && scene.coordinates.length > 12;
-    const actuated = this.rows.filter((_, i) => !split || scene.coordinates[i]?.actuated);
-    const passive = this.rows.filter((_, i) => split && !scene.coordinates[i]?.actuated);
-    const hidden = (this.list.querySelector("details.more") as HTMLDetailsElement | null)?.open ?? false;
-    const more = h("details", { class: "more" }, h("summary", {}, `${passive.length} passive coordinates`), ...passive.map((row) => row.element));
-    more.open = hidden;
-    fill(
-      this.list,
+    const split = scene.closed && scene.coordinates.length > MANY;
+    const first = this.rows.filter((_, i) => !split || scene.coordinates[i]?.actuated);
+    const more = this.rows.filter((_, i) => split && !scene.coordinates[i]?.actuated);
+    return [
       scene.coordinates.length === 0 && h("p", { class: "empty" }, "This model has no movable joint."),
       scene.actuators.length > 0 && h("p", { class: "note" }, "The switch before a name selects the joint as actuated."),
-      ...actuated.map((row) => row.element),
-      ...closing.map((actuator) => h("div", { class: "joint" }, this.actuatorSwitch(scene, actuator), h("span", { class: "note" }, "loop-closure joint"))),
-      passive.length > 0 && more,
-    );
-    this.panel.note(`${scene.coordinates.length} coordinates`);
-    this.buildSelfMotion(scene);
+      ...first.map((row) => row.element),
+      ...closing.map((actuator) => h("div", { class: "joint" }, this.actuatorSwitch(actuator), h("span", { class: "note" }, "loop-closure joint"))),
+      more.length > 0 && h("details", { class: "more" }, h("summary", {}, `${more.length} more coordinates`), ...more.map((row) => row.element)),
+    ];
   }
 
   show(scene: Scene, state: State): void {
+    if (!this.panel.isOpen()) return;
     const now = performance.now();
     const outside = new Set(state.outside_limits);
     this.rows.forEach((row, i) => {
@@ -80,7 +96,7 @@ export class Joints {
     const field = h("input", { type: "number", class: "field", step: "any", disabled: !adjustable, "aria-label": `${name} as a number [${unit}]` });
     if (coordinate.lower !== null) field.min = String(low);
     if (coordinate.upper !== null) field.max = String(high);
-    const label = actuator ? this.actuatorSwitch(scene, actuator, name) : h("span", { class: "name", title: name }, name);
+    const label = actuator ? this.actuatorSwitch(actuator, name) : h("span", { class: "name", title: name }, name);
     const element = h(
       "div", { class: "joint" },
       label,
@@ -108,22 +124,20 @@ export class Joints {
   }
 
   /** The whole set goes to the server: the actuated joints are chosen together. */
-  private actuatorSwitch(scene: Scene, actuator: Actuator, shown = actuator.name): HTMLElement {
+  private actuatorSwitch(actuator: Actuator, shown = actuator.name): HTMLElement {
     const box = h("input", { type: "checkbox", class: "switch", role: "switch", "aria-label": `${actuator.name} actuated`, "data-actuator": actuator.name });
-    box.checked = actuator.actuated;
+    this.actuators.set(actuator.name, box);
     box.addEventListener("change", () => {
-      const names = scene.actuators.filter((other) => (other.name === actuator.name ? box.checked : other.actuated)).map((other) => other.name);
+      const all = this.session.scene?.actuators ?? [];
+      const names = all.filter((other) => (other.name === actuator.name ? box.checked : other.actuated)).map((other) => other.name);
       this.session.send({ type: "actuated", names });
     });
     return h("label", { class: "actuator" }, box, h("span", { class: "name", title: shown }, shown));
   }
 
-  private buildSelfMotion(scene: Scene): void {
+  private selfMotionParts(scene: Scene): Child[] {
     this.selfSlider = null;
-    if (scene.self_motions === 0) {
-      fill(this.selfMotion);
-      return;
-    }
+    if (scene.self_motions === 0) return [];
     const which = h("select", { class: "select", "aria-label": "Which self-motion" }, ...Array.from({ length: scene.self_motions }, (_, i) => h("option", { value: i }, `motion ${i + 1}`)));
     const slider = h("input", { type: "range", min: -1, max: 1, step: "any", "aria-label": "Self-motion: share of the maximum speed" });
     const send = (): void => this.session.sendSoon("null_space", { type: "null_space", rate: slider.valueAsNumber, index: Number(which.value) });
@@ -140,13 +154,12 @@ export class Joints {
     slider.addEventListener("pointerup", rest);
     slider.addEventListener("blur", rest);
     this.selfSlider = slider;
-    fill(
-      this.selfMotion,
+    return [
       h("h3", {}, "Self-motion (null space)"),
       h("div", { class: "row" }, scene.self_motions > 1 && which),
       slider,
       h("p", { class: "note" }, "Joint motion with the tool at rest: drag the slider to move, release it to stop."),
-    );
+    ];
   }
 }
 

@@ -2,10 +2,11 @@
 import { fill, h } from "../dom";
 import { plain } from "../format";
 import { panel } from "../panels/panel";
-import type { Pose, Scene, SimpleShape, State, Vec3 } from "../protocol";
+import type { Obstacle, Pose, Scene, SimpleShape, State, Vec3 } from "../protocol";
 import type { Session } from "../session";
 
 type Kind = "sphere" | "box";
+type Row = { element: HTMLElement; fields: HTMLInputElement[] };
 /** The size of a new obstacle, and its distance from the tool, as shares of the reach. */
 const SIZE = 0.1;
 const ASIDE = 0.5;
@@ -17,8 +18,10 @@ export class Obstacles {
   private readonly margin = this.distance("Distance below which pairs of bodies count (m)", "margin");
   private readonly kind = h("select", { class: "select", "aria-label": "Shape of a new obstacle" }, h("option", { value: "sphere" }, "sphere"), h("option", { value: "box" }, "box"));
   private readonly sizes = h("span", { class: "three" });
+  private readonly listTitle = h("h3", { hidden: true }, "Positions [m]; the name puts the handle on it");
   private readonly list = h("div", {});
-  private fields: HTMLInputElement[][] = [];
+  private readonly rows = new Map<string, Row>();
+  private readonly addButton = h("button", { class: "button small", type: "button", onclick: () => this.add() }, "Add");
   private held: string | null = null;
 
   constructor(private readonly session: Session, private readonly hold: (name: string | null) => void) {
@@ -30,7 +33,8 @@ export class Obstacles {
       h("div", { class: "line" }, h("span", { class: "note" }, "Keep [m]"), this.gap),
       h("div", { class: "line" }, h("span", { class: "note" }, "Margin [m]"), this.margin),
       h("h3", {}, "New obstacle, size [m]"),
-      h("div", { class: "new-obstacle" }, this.kind, this.sizes, h("button", { class: "button small", type: "button", onclick: () => this.add() }, "Add")),
+      h("div", { class: "new-obstacle" }, this.kind, this.sizes, this.addButton),
+      this.listTitle,
       this.list,
     );
   }
@@ -41,30 +45,50 @@ export class Obstacles {
     if (avoidance) [this.gap.value, this.margin.value] = [String(avoidance.gap), String(avoidance.margin)];
     if (!this.sizes.hasChildNodes()) this.offerSizes();
     this.panel.note([obstacles.length > 0 ? String(obstacles.length) : "", avoidance ? "avoided" : ""].filter(Boolean).join(", "));
-    this.fields = obstacles.map(({ name }, i) =>
-      ["x", "y", "z"].map((axis, k) => h("input", { class: "field", type: "number", step: "any", "aria-label": `${axis} of ${name} in the world frame (m)`, "data-obstacle": `${name} ${axis}`, onchange: () => this.move(i, k) })));
-    const rows = obstacles.map(({ name, kind }, i) => h(
+    this.keep(obstacles);
+    this.show(this.held);
+  }
+
+  /** Rows of obstacles that stay keep their nodes. */
+  private keep(obstacles: Obstacle[]): void {
+    const focused = this.list.contains(document.activeElement);
+    for (const [name, { element }] of this.rows) {
+      if (obstacles.some((other) => other.name === name)) continue;
+      element.remove();
+      this.rows.delete(name);
+    }
+    for (const { name, kind } of obstacles) {
+      if (this.rows.has(name)) continue;
+      const row = this.row(name, kind);
+      this.rows.set(name, row);
+      this.list.append(row.element);
+    }
+    this.listTitle.hidden = obstacles.length === 0;
+    if (focused && !this.list.contains(document.activeElement)) this.addButton.focus();
+  }
+
+  private row(name: string, kind: string): Row {
+    const fields = ["x", "y", "z"].map((axis, k) => h("input", { class: "field", type: "number", step: "any", "aria-label": `${axis} of ${name} in the world frame (m)`, "data-obstacle": `${name} ${axis}`, onchange: () => this.move(name, k) }));
+    const element = h(
       "div", { class: "obstacle", "data-row": name },
       h("span", { class: "row" },
         h("button", { class: "button small name", type: "button", title: `Drag ${name} in the view`, "aria-pressed": "false", onclick: () => this.hold(this.held === name ? null : name) }, name),
         h("span", { class: "note" }, kind.replaceAll("_", "-")),
         h("button", { class: "button small remove", type: "button", title: `Remove ${name}`, "aria-label": `Remove ${name}`, onclick: () => this.session.send({ type: "remove_obstacle", name }) }, "×")),
-      h("span", { class: "three" }, ...(this.fields[i] ?? [])),
-    ));
-    fill(this.list, rows.length > 0 && h("h3", {}, "Positions [m]; the name puts the handle on it"), ...rows);
-    this.show(this.held);
+      h("span", { class: "three" }, ...fields),
+    );
+    return { element, fields };
   }
 
   /** Marks the obstacle at the handle. */
   show(held: string | null): void {
     this.held = held;
-    for (const row of this.list.querySelectorAll("[data-row]")) {
-      row.querySelector(".name")?.setAttribute("aria-pressed", String(row.getAttribute("data-row") === held));
-    }
+    for (const [name, { element }] of this.rows) element.querySelector(".name")?.setAttribute("aria-pressed", String(name === held));
   }
 
   place(state: State): void {
-    this.fields.forEach((fields, i) => fields.forEach((field, k) => {
+    if (!this.panel.isOpen()) return;
+    this.session.scene?.obstacles.forEach(({ name }, i) => this.rows.get(name)?.fields.forEach((field, k) => {
       if (document.activeElement !== field) field.value = plain(state.obstacles[i]?.position[k] ?? 0);
     }));
   }
@@ -109,11 +133,11 @@ export class Obstacles {
     return this.held;
   }
 
-  private move(i: number, k: number): void {
+  private move(name: string, k: number): void {
     const { scene, state } = this.session;
-    const [name, pose] = [scene?.obstacles[i]?.name, state?.obstacles[i]];
-    const value = this.fields[i]?.[k]?.valueAsNumber ?? NaN;
-    if (name === undefined || !pose || !Number.isFinite(value)) return;
+    const pose = state?.obstacles[scene?.obstacles.findIndex((other) => other.name === name) ?? -1];
+    const value = this.rows.get(name)?.fields[k]?.valueAsNumber ?? NaN;
+    if (!pose || !Number.isFinite(value)) return;
     const position = pose.position.map((was, axis) => (axis === k ? value : was)) as Vec3;
     this.drag(name, { position, quaternion: pose.quaternion });
   }

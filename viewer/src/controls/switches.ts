@@ -1,5 +1,5 @@
 /** A switch for each overlay, with its unit and frame; and for the model's own shapes. */
-import { fill, h } from "../dom";
+import { h, Kept } from "../dom";
 import { overlayColour, type Overlays } from "../overlays/overlays";
 import { panel } from "../panels/panel";
 import type { Scene } from "../protocol";
@@ -8,6 +8,7 @@ export class Switches {
   readonly panel = panel("show", "Show", true);
   private readonly boxes = new Map<string, HTMLInputElement>();
   private readonly shapes: HTMLInputElement;
+  private readonly kept = new Kept(this.panel.body);
 
   constructor(private readonly overlays: Overlays, private readonly showShapes: (shown: boolean) => void) {
     this.shapes = h("input", { type: "checkbox", class: "switch", role: "switch", "data-overlay": "shapes" });
@@ -19,20 +20,21 @@ export class Switches {
   }
 
   build(scene: Scene, hasShapes: boolean): void {
-    this.boxes.clear();
-    const rows = scene.overlays.map((info) => {
-      const box = h("input", { type: "checkbox", class: "switch", role: "switch", "data-overlay": info.name });
-      box.checked = this.overlays.on.has(info.name);
-      box.addEventListener("change", () => this.overlays.show(info.name, box.checked));
-      this.boxes.set(info.name, box);
-      return row(box, overlayColour(info.name), info.title, `${info.unit}; ${info.frame}`);
+    this.kept.fill([scene.overlays, hasShapes], () => {
+      this.boxes.clear();
+      const rows = scene.overlays.map((info) => {
+        const box = h("input", { type: "checkbox", class: "switch", role: "switch", "data-overlay": info.name });
+        box.checked = this.overlays.on.has(info.name);
+        box.addEventListener("change", () => this.overlays.show(info.name, box.checked));
+        this.boxes.set(info.name, box);
+        return row(box, overlayColour(info.name), info.title, `${info.unit}; ${info.frame}`);
+      });
+      return [
+        ...rows,
+        rows.length === 0 && h("p", { class: "empty" }, "No overlays are available for this model."),
+        hasShapes && row(this.shapes, "body-2", "Shapes of the model", "m; off: rods and joints"),
+      ];
     });
-    fill(
-      this.panel.body,
-      ...rows,
-      rows.length === 0 && h("p", { class: "empty" }, "No overlays are available for this model."),
-      hasShapes && row(this.shapes, "body-2", "Shapes of the model", "m; off: rods and joints"),
-    );
   }
 }
 

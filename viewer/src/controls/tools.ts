@@ -1,5 +1,5 @@
 /** Buttons over the view: what the handle does, and from where one looks. */
-import { fill, h } from "../dom";
+import { h, text, type Child } from "../dom";
 import { icon } from "../icons";
 import type { Scene } from "../protocol";
 import type { Stage, View } from "../scene/stage";
@@ -8,21 +8,29 @@ import type { Mode, Target } from "../target";
 const VIEWS: View[] = ["corner", "front", "side", "top"];
 
 export class Tools {
-  private readonly modes = h("span", { class: "group", role: "group", "aria-label": "Handle" });
-  private readonly handles = h("span", { class: "group", role: "group", "aria-label": "Dragged handle" });
-  private readonly space: HTMLButtonElement;
+  private readonly modes = {
+    translate: small("Move (W)", () => this.setMode("translate"), icon("move"), "Move"),
+    rotate: small("Rotate (E)", () => this.setMode("rotate"), icon("rotate"), "Rotate"),
+  };
+  private readonly space = small("Drag along the axes of the tool (X)", () => this.swapSpace(), "tool axes");
+  /** What the handle is on. */
+  private readonly handles = {
+    target: small(null, () => this.handle("target"), "target"),
+    point: small(null, () => this.handle("point"), "reference point"),
+    obstacle: small(null, () => undefined),
+  };
   private hasPoint = false;
   private inTool = false;
   private turns = true;
 
   /** `released` is called when the handle is back on the target. */
   constructor(tools: HTMLElement, private readonly target: Target, stage: Stage, fit: () => void, private readonly released: () => void) {
-    this.space = h("button", { class: "button small", type: "button", "aria-pressed": "false", title: "Drag along the axes of the tool (X)", onclick: () => this.swapSpace() }, "tool axes");
+    const group = (label: string, buttons: HTMLElement[]): HTMLElement => h("span", { class: "group", role: "group", "aria-label": label }, ...buttons);
     tools.append(
-      h("span", { class: "float-row" }, this.modes, this.space, this.handles),
+      h("span", { class: "float-row" }, group("Handle", Object.values(this.modes)), this.space, group("Dragged handle", Object.values(this.handles))),
       h(
         "span", { class: "float-row" },
-        h("span", { class: "group", role: "group", "aria-label": "View direction" }, ...VIEWS.map((view) => h("button", { class: "button small", type: "button", onclick: () => stage.view(view) }, view))),
+        group("View direction", VIEWS.map((view) => h("button", { class: "button small", type: "button", onclick: () => stage.view(view) }, view))),
         h("button", { class: "button small", type: "button", title: "Show all (F)", "aria-label": "Show all", onclick: fit }, icon("fit")),
       ),
     );
@@ -79,24 +87,29 @@ export class Tools {
   }
 
   private paint(): void {
-    const modes: [Mode, "move" | "rotate", string, boolean][] = [
-      ["translate", "move", "Move (W)", true],
-      ["rotate", "rotate", "Rotate (E)", this.mayTurn()],
-    ];
-    fill(this.modes, ...modes.map(([mode, name, label, there]) =>
-      h("button", { class: "button small", type: "button", "aria-pressed": String(this.target.mode === mode), disabled: !there, title: label, onclick: () => this.setMode(mode) }, icon(name), label.split(" ")[0] ?? "")));
-    this.space.setAttribute("aria-pressed", String(this.inTool));
-    const { handle: now, obstacle } = this.target;
-    const button = (label: string, pressed: boolean, choose: () => void): HTMLElement =>
-      h("button", { class: "button small", type: "button", "aria-pressed": String(pressed), onclick: choose }, label);
-    const there = this.hasPoint || obstacle !== null;
-    fill(
-      this.handles,
-      there && button("target", now === "target", () => this.handle("target")),
-      this.hasPoint && button("reference point", now === "point", () => this.handle("point")),
-      obstacle !== null && button(obstacle, true, () => undefined),
-    );
+    const { mode, handle: now, obstacle } = this.target;
+    const { target, point, obstacle: held } = this.handles;
+    for (const [name, button] of Object.entries(this.modes)) press(button, mode === name);
+    this.modes.rotate.disabled = !this.mayTurn();
+    press(this.space, this.inTool);
+    press(target, now === "target");
+    press(point, now === "point");
+    press(held, obstacle !== null);
+    text(held, obstacle ?? "");
+    target.hidden = !this.hasPoint && obstacle === null;
+    point.hidden = !this.hasPoint;
+    held.hidden = obstacle === null;
+    const focused = Object.values(this.handles).find((button) => button === document.activeElement);
+    if (focused?.hidden) this.modes.translate.focus();
   }
+}
+
+function small(title: string | null, work: () => void, ...children: Child[]): HTMLButtonElement {
+  return h("button", { class: "button small", type: "button", "aria-pressed": "false", title, onclick: work }, ...children);
+}
+
+function press(button: HTMLButtonElement, pressed: boolean): void {
+  button.setAttribute("aria-pressed", String(pressed));
 }
 
 function isTyping(target: EventTarget | null): boolean {

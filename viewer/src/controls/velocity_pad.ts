@@ -1,5 +1,5 @@
 /** Moves the tool while a button or key is held: a twist in world axes, which the servo follows. */
-import { fill, h } from "../dom";
+import { fill, h, text } from "../dom";
 import { short } from "../format";
 import type { Scene, State, Vec3 } from "../protocol";
 import type { Session } from "../session";
@@ -75,7 +75,7 @@ export class VelocityPad {
   show(state: State): void {
     const twist = state.servo.twist;
     const size = twist ? [Math.hypot(...twist.slice(0, 3)), Math.hypot(...twist.slice(3))] : null;
-    this.note.textContent = size ? `commanded ${short(size[0])} m/s, ${short(size[1])} rad/s` : "";
+    text(this.note, size ? `commanded ${short(size[0])} m/s, ${short(size[1])} rad/s` : "");
   }
 
   private press(event: KeyboardEvent): void {

@@ -1,6 +1,6 @@
 /** All overlays: which are on, their drawings, and their words in the legend. */
 import { Group } from "three";
-import { fill, h } from "../dom";
+import { h, Kept, text } from "../dom";
 import { isEmpty, type OverlayInfo, type OverlayName, type Scene, type State } from "../protocol";
 import type { Label, Labels } from "../scene/labels";
 import { discard } from "../scene/shapes";
@@ -33,12 +33,16 @@ export class Overlays {
   /** What panels want to know of without a drawing. */
   private readonly wanted = new Set<OverlayName>();
   private readonly listeners = new Set<() => void>();
+  private readonly kept: Kept;
+  private words: HTMLElement[] = [];
 
   constructor(
-    private readonly legend: HTMLElement,
+    legend: HTMLElement,
     private readonly labels: Labels,
     private readonly changed: (names: OverlayName[]) => void,
-  ) {}
+  ) {
+    this.kept = new Kept(legend);
+  }
 
   onChange(listener: () => void): void {
     this.listeners.add(listener);
@@ -64,21 +68,29 @@ export class Overlays {
   draw(scene: Scene, state: State, places: Pick<Context, "jointPlace" | "size">): void {
     for (const child of [...this.group.children]) discard(child);
     const labels: Label[] = [];
-    const lines: HTMLElement[] = [];
+    const words: string[] = [];
     for (const info of scene.overlays) {
       if (!this.on.has(info.name)) continue;
       const group = new Group();
       group.renderOrder = 2;
-      const words = drawOne(info.name, group, {
+      words.push(drawOne(info.name, group, {
         scene, state, ...places,
         line: places.size * 0.0075,
         label: (label) => labels.push(label),
-      });
+      }));
       this.group.add(group);
-      lines.push(legendLine(info, words));
     }
     this.labels.set("overlays", labels);
-    fill(this.legend, ...lines);
+    this.write(scene.overlays.filter(({ name }) => this.on.has(name)), words);
+  }
+
+  /** The legend: a line for each overlay, whose words are set. */
+  private write(shown: OverlayInfo[], words: string[]): void {
+    this.kept.fill(shown, () => {
+      this.words = shown.map(() => h("span", {}));
+      return shown.map((info, i) => legendLine(info, this.words[i] ?? null));
+    });
+    this.words.forEach((element, i) => text(element, words[i] ? ` ${words[i]}` : ""));
   }
 
   private tell(): void {
@@ -100,8 +112,8 @@ function drawOne<K extends OverlayName>(name: K, group: Group, context: Context)
   return overlay.words(full, context);
 }
 
-function legendLine(info: OverlayInfo, words: string): HTMLElement {
+function legendLine(info: OverlayInfo, words: HTMLElement | null): HTMLElement {
   const swatch = h("span", { class: "swatch" });
   swatch.style.setProperty("--swatch", `var(--${overlayColour(info.name)})`);
-  return h("div", {}, swatch, h("span", {}, h("b", {}, info.title), words ? ` ${words}` : ""));
+  return h("div", {}, swatch, h("span", {}, h("b", {}, info.title), words));
 }

@@ -1,5 +1,5 @@
 /** Two inverses side by side, and their joint velocities for a moved reference point. */
-import { fill, h } from "../dom";
+import { fill, h, Kept } from "../dom";
 import { fixed, plain, short } from "../format";
 import type { Comparison, Scene, Vec3 } from "../protocol";
 import type { Session } from "../session";
@@ -12,6 +12,7 @@ export class Compare {
   point: Vec3 | null = null;
   private readonly first = h("select", { class: "select", "aria-label": "First inverse" });
   private readonly second = h("select", { class: "select", "aria-label": "Second inverse" });
+  private readonly kept = [this.first, this.second].map((choice) => new Kept(choice));
   private readonly pitch = h("input", { class: "field", type: "number", step: "any", value: "0.1", "aria-label": "Pitch h of hyperbolic inverses (m/rad)" });
   private readonly fields = [0, 1, 2].map((i) => h("input", { class: "field", type: "number", step: "any", "aria-label": `Reference point ${"xyz"[i]} (m)`, oninput: () => this.typed() }));
   private readonly pitchRow = h("p", { class: "row" }, h("label", {}, h("span", { class: "note" }, "pitch h"), this.pitch, h("span", { class: "unit" }, "m/rad")));
@@ -55,9 +56,9 @@ export class Compare {
     }
     const names = scene.methods.map((method) => method.name);
     const old = [this.first.value, this.second.value];
+    this.question = "";
     [this.first, this.second].forEach((choice, i) => {
-      this.question = "";
-      fill(choice, ...names.map((name) => h("option", { value: name }, name.replaceAll("-", " "))));
+      this.kept[i]?.fill(names, () => names.map((name) => h("option", { value: name }, name.replaceAll("-", " "))));
       const preferred = [old[i], i === 0 ? "truncated" : "hyperbolic", names[i]].find((name) => name && names.includes(name));
       choice.value = preferred ?? names[0] ?? "";
     });

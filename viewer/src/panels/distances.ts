@@ -1,13 +1,13 @@
 /** Bodies near each other: their pairs in a list, lines between their closest points in the view. */
 import { Group, Mesh, SphereGeometry } from "three";
-import { fill, h } from "../dom";
+import { h, Kept } from "../dom";
 import { fixed } from "../format";
 import type { Near, Scene, State } from "../protocol";
 import { drawn } from "../scene/palette";
 import type { Labels } from "../scene/labels";
 import { discard, rod, vector } from "../scene/shapes";
 import type { Session } from "../session";
-import { empty, panel } from "./panel";
+import { empty, grid, panel, type Grid } from "./panel";
 
 const MARGIN = 0.2;
 const BALL = new SphereGeometry(1, 12, 8);
@@ -18,6 +18,8 @@ export class Distances {
   readonly group = new Group();
   private readonly margin = h("input", { class: "field", type: "number", step: "any", min: 0, value: MARGIN, "aria-label": "Only pairs closer than this (m)", "data-margin": "" });
   private readonly list = h("div", {});
+  private readonly kept = new Kept(this.list);
+  private table: Grid | null = null;
 
   /** Shows the collision shapes while the panel is open. */
   private readonly shapes = h("input", { type: "checkbox", class: "switch", role: "switch", "data-collisions": "" });
@@ -59,14 +61,24 @@ export class Distances {
       at: vector(one.point_a).lerp(vector(one.point_b), 0.5),
       colour: stops(one) || one.distance <= 0 ? "c-lost" : "c-distance",
     })));
-    fill(
-      this.list,
-      shapes === 0 && empty("No link of this model has a collision shape."),
-      shapes > 0 && near.length === 0 && empty(`None of ${pairs} pairs is closer than ${fixed(margin, 3)} m.`),
-      near.length > 0 && table(near, stops),
-      near.length > 0 && h("p", { class: "note" }, `${near.length + more} of ${pairs} pairs${more > 0 ? `; the nearest ${near.length} are shown` : ""}`),
-      shapes > 0 && pairs === 0 && scene.obstacles.length === 0 && h("p", { class: "note" }, "Links that a joint connects are not watched."),
-    );
+    const noLinks = pairs === 0 && scene.obstacles.length === 0;
+    this.kept.fill([near.map(({ a, b }) => [a, b]), more, pairs, shapes, margin, noLinks], () => {
+      this.table = grid("Distances of bodies", ["", "distance [m]"], near.map(({ a, b }) => h("span", { title: `${a} and ${b}` }, a, h("br"), b)), "near");
+      return [
+        shapes === 0 && empty("No link of this model has a collision shape."),
+        shapes > 0 && near.length === 0 && empty(`None of ${pairs} pairs is closer than ${fixed(margin, 3)} m.`),
+        near.length > 0 && this.table.element,
+        near.length > 0 && h("p", { class: "note" }, `${near.length + more} of ${pairs} pairs${more > 0 ? `; the nearest ${near.length} are shown` : ""}`),
+        shapes > 0 && noLinks && h("p", { class: "note" }, "Links that a joint connects are not watched."),
+      ];
+    });
+    near.forEach((one, i) => {
+      const row = this.table?.rows[i];
+      if (!row) return;
+      row.className = stops(one) ? "stops" : "";
+      Object.assign(row.dataset, { near: `${one.a} ${one.b}`, value: one.distance });
+      this.table?.set(i, [fixed(one.distance, 4)]);
+    });
   }
 
   private clear(): void {
@@ -90,18 +102,4 @@ export class Distances {
       this.group.add(part);
     }
   }
-}
-
-function table(near: Near[], stops: (one: Near) => boolean): HTMLElement {
-  const rows = near.map((one) => h(
-    "tr", { class: stops(one) ? "stops" : "", "data-near": `${one.a} ${one.b}`, "data-value": one.distance },
-    h("th", { scope: "row", title: `${one.a} and ${one.b}` }, one.a, h("br"), one.b),
-    h("td", {}, fixed(one.distance, 4)),
-  ));
-  return h(
-    "table", { class: "numbers near" },
-    h("caption", { class: "hidden-label" }, "Distances of bodies"),
-    h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, "distance [m]"))),
-    h("tbody", {}, ...rows),
-  );
 }

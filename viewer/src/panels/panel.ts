@@ -1,5 +1,5 @@
 /** A panel: a heading that folds, a note in it, a body. */
-import { h, text } from "../dom";
+import { h, text, type Child } from "../dom";
 
 export type Panel = {
   element: HTMLDetailsElement;
@@ -42,22 +42,44 @@ function remembered(name: string): boolean | null {
 }
 
 /** Pairs of a name and a value. */
-export function pairs(...entries: [string, string | Node][]): HTMLElement {
-  return h("dl", { class: "pairs" }, ...entries.flatMap(([name, value]) => [h("dt", {}, name), h("dd", { class: typeof value === "string" ? "number" : "" }, value)]));
+export function pairs(...entries: [string, string][]): HTMLElement {
+  const made = facts(entries.map(([name]) => name));
+  entries.forEach(([, value], i) => made.set(i, value));
+  return made.element;
+}
+
+/** Named values that are set later. */
+export function facts(names: string[]): { element: HTMLElement; set: (i: number, value: string) => void } {
+  const values = names.map(() => h("dd", { class: "number" }));
+  const element = h("dl", { class: "pairs" }, ...names.flatMap((name, i) => [h("dt", {}, name), values[i]]));
+  return { element, set: (i, value) => void (values[i] && text(values[i], value)) };
 }
 
 /** A table of numbers with a head; the first cell of each row names it. */
-export function numbers(caption: string, head: string[], rows: (string | Node)[][]): HTMLElement {
-  return h(
+export function numbers(caption: string, head: string[], rows: string[][]): HTMLElement {
+  const made = grid(caption, head, rows.map((row) => row[0] ?? ""));
+  rows.forEach((row, i) => made.set(i, row.slice(1)));
+  return made.element;
+}
+
+/** A table of numbers whose rows are set later; `head` begins with the column of the names. */
+export function grid(caption: string, head: string[], names: Child[], style = ""): Grid {
+  const cells = names.map(() => head.slice(1).map(() => h("td", {})));
+  const rows = names.map((name, i) => h("tr", {}, h("th", { scope: "row" }, name), ...(cells[i] ?? [])));
+  const element = h(
     "div", { class: "scroll" },
     h(
-      "table", { class: "numbers" },
+      "table", { class: `numbers ${style}`.trim() },
       h("caption", { class: "hidden-label" }, caption),
       h("thead", {}, h("tr", {}, ...head.map((name, i) => (i === 0 ? h("td", {}) : h("th", { scope: "col" }, name))))),
-      h("tbody", {}, ...rows.map((row) => h("tr", {}, ...row.map((cell, i) => (i === 0 ? h("th", { scope: "row" }, cell) : h("td", {}, cell)))))),
+      h("tbody", {}, ...rows),
     ),
   );
+  const set = (i: number, values: string[]): void => cells[i]?.forEach((cell, k) => text(cell, values[k] ?? ""));
+  return { element, rows, set };
 }
+
+export type Grid = { element: HTMLElement; rows: HTMLElement[]; set: (row: number, values: string[]) => void };
 
 export function empty(words: string): HTMLElement {
   return h("p", { class: "empty" }, words);

@@ -1,72 +1,106 @@
 /** Singular values as bars on a logarithmic scale, with the threshold below which they count as lost. */
-import { fill, h, s } from "../dom";
+import { h, Kept, s, text } from "../dom";
 import { short } from "../format";
 import type { Scene, Singular, State } from "../protocol";
-import { empty, pairs, panel, type Panel } from "./panel";
+import { facts, panel, type Panel } from "./panel";
 
 const LEFT = 24;
 const RIGHT = 62;
 const ROW = 17;
 const TICK = 34; // room of a number below the bars
 const DECADES = 5; // below the largest value
+const MARGINS = 28; // of a panel's body
 
 export function singularPanel(): Panel & { show: (scene: Scene, state: State) => void } {
   const made = panel("singular", "Singular values", true);
+  const bars = new Bars();
+  const none = h("p", { class: "empty" });
+  const known = facts(["rank", "gap (smallest kept / largest lost)", "smallest / largest", "threshold"]);
+  const basis = h("p", { class: "note" });
+  const all = h("div", {}, bars.element, known.element, basis);
+  made.body.append(none, all);
+  // Asked for with each state, the width would be laid out with each.
+  let width = 0;
+  new ResizeObserver(() => {
+    width = made.body.clientWidth - MARGINS;
+  }).observe(made.body);
   return {
     ...made,
     show(scene, state) {
       const { singular } = state;
       made.note(singular ? `rank ${singular.rank} of ${scene.task.components.length}` : "");
+      if (!made.isOpen()) return;
+      none.hidden = singular !== null;
+      all.hidden = singular === null;
       if (!singular) {
-        fill(made.body, empty(state.servo.sentence));
+        text(none, state.servo.sentence);
         return;
       }
-      fill(
-        made.body,
-        bars(singular, Math.max(made.body.clientWidth - 28, 180)),
-        pairs(
-          ["rank", String(singular.rank)],
-          ["gap (smallest kept / largest lost)", singular.gap !== null ? short(singular.gap) : singular.rank < singular.values.length ? "∞" : "none lost"],
-          ["smallest / largest", short(singular.ratio)],
-          ["threshold", short(singular.threshold)],
-        ),
-        h("p", { class: "note" }, `Task Jacobian (${scene.task.components.join(", ")}), linear rows relative to ${short(singular.length)} m`),
-      );
+      bars.show(singular, Math.max(width || made.body.clientWidth - MARGINS, 180));
+      known.set(0, String(singular.rank));
+      known.set(1, singular.gap !== null ? short(singular.gap) : singular.rank < singular.values.length ? "∞" : "none lost");
+      known.set(2, short(singular.ratio));
+      known.set(3, short(singular.threshold));
+      text(basis, `Task Jacobian (${scene.task.components.join(", ")}), linear rows relative to ${short(singular.length)} m`);
     },
   };
 }
 
-function bars(singular: Singular, width: number): SVGElement {
-  const all = Math.max(0, ...singular.values);
-  const largest = all > 0 ? Math.max(all, singular.threshold) : 1;
-  const threshold = Math.max(singular.threshold, 1e-12 * largest);
-  const top = Math.ceil(Math.log10(largest) + 1e-9);
-  const decades = Math.max(DECADES, Math.ceil(top - Math.log10(threshold) + 0.3));
-  const bottom = top - decades;
-  const across = width - LEFT - RIGHT;
-  const x = (value: number): number => LEFT + (Math.max(0, Math.log10(Math.max(value, 1e-300)) - bottom) / decades) * across;
-  const height = singular.values.length * ROW + 32;
-  const foot = singular.values.length * ROW + 4;
-  const every = Math.ceil((TICK * decades) / across);
-  const ticks = Array.from({ length: decades + 1 }, (_, i) => bottom + i).filter((power) => (power - bottom) % every === 0);
-  const line = x(threshold);
-  return s(
-    "svg",
-    { class: "bars", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Singular values ${singular.values.map((v) => short(v)).join(", ")}; threshold ${short(singular.threshold)}` },
-    ...ticks.map((power) => s("line", { class: "tick", x1: x(10 ** power), x2: x(10 ** power), y1: 0, y2: foot })),
-    ...ticks.map((power) => s("text", { x: x(10 ** power), y: foot + 13, "text-anchor": "middle" }, power === 0 ? "1" : power === 1 ? "10" : `1e${String(power).replace("-", "−")}`)),
-    ...singular.values.flatMap((value, i) => {
-      const lost = value < singular.threshold;
-      const y = i * ROW + 3;
+type Bar = { body: SVGElement; figure: SVGElement };
+
+/** The drawing: its scale is built anew where it changes, otherwise only lengths and figures are set. */
+class Bars {
+  readonly element = s("svg", { class: "bars", role: "img" });
+  private readonly kept = new Kept(this.element);
+  private readonly line = s("line", { class: "threshold", y1: 0 });
+  private readonly label = s("text", { class: "threshold-label" }, "threshold");
+  private bars: Bar[] = [];
+
+  show(singular: Singular, width: number): void {
+    const { values } = singular;
+    const most = Math.max(0, ...values);
+    const largest = most > 0 ? Math.max(most, singular.threshold) : 1;
+    const threshold = Math.max(singular.threshold, 1e-12 * largest);
+    const top = Math.ceil(Math.log10(largest) + 1e-9);
+    const decades = Math.max(DECADES, Math.ceil(top - Math.log10(threshold) + 0.3));
+    const bottom = top - decades;
+    const across = width - LEFT - RIGHT;
+    const x = (value: number): number => LEFT + (Math.max(0, Math.log10(Math.max(value, 1e-300)) - bottom) / decades) * across;
+    const foot = values.length * ROW + 4;
+    this.kept.fill([values.length, width, bottom, decades], () => {
+      const every = Math.ceil((TICK * decades) / across);
+      const ticks = Array.from({ length: decades + 1 }, (_, i) => bottom + i).filter((power) => (power - bottom) % every === 0);
+      set(this.element, { viewBox: `0 0 ${width} ${foot + 28}` });
+      set(this.line, { y2: foot + 2 });
+      set(this.label, { y: foot + 26 });
+      this.bars = values.map((_, i) => ({
+        body: s("rect", { x: LEFT, y: i * ROW + 3, height: ROW - 5, rx: 2 }),
+        figure: s("text", { class: "figure", x: width, y: i * ROW + 13, "text-anchor": "end" }),
+      }));
       return [
-        s("text", { x: LEFT - 6, y: y + 10, "text-anchor": "end" }, `σ${subscript(i + 1)}`),
-        s("rect", { class: lost ? "bar-lost" : "bar-kept", x: LEFT, y, width: Math.max(x(value) - LEFT, 1), height: ROW - 5, rx: 2 }),
-        s("text", { class: "figure", x: width, y: y + 10, "text-anchor": "end" }, `${short(value)}${lost ? " lost" : ""}`),
+        ...ticks.map((power) => s("line", { class: "tick", x1: x(10 ** power), x2: x(10 ** power), y1: 0, y2: foot })),
+        ...ticks.map((power) => s("text", { x: x(10 ** power), y: foot + 13, "text-anchor": "middle" }, power === 0 ? "1" : power === 1 ? "10" : `1e${String(power).replace("-", "−")}`)),
+        ...this.bars.flatMap(({ body, figure }, i) => [s("text", { x: LEFT - 6, y: i * ROW + 13, "text-anchor": "end" }, `σ${subscript(i + 1)}`), body, figure]),
+        this.line, this.label,
       ];
-    }),
-    s("line", { class: "threshold", x1: line, x2: line, y1: 0, y2: foot + 2 }),
-    s("text", { class: "threshold-label", x: line, y: foot + 26, "text-anchor": line > width / 2 ? "end" : "start" }, "threshold"),
-  );
+    });
+    const line = x(threshold);
+    set(this.line, { x1: line, x2: line });
+    set(this.label, { x: line, "text-anchor": line > width / 2 ? "end" : "start" });
+    set(this.element, { "aria-label": `Singular values ${values.map((v) => short(v)).join(", ")}; threshold ${short(singular.threshold)}` });
+    this.bars.forEach(({ body, figure }, i) => {
+      const value = values[i] ?? 0;
+      const lost = value < singular.threshold;
+      set(body, { class: lost ? "bar-lost" : "bar-kept", width: Math.max(x(value) - LEFT, 1) });
+      text(figure, `${short(value)}${lost ? " lost" : ""}`);
+    });
+  }
+}
+
+function set(element: Element, attributes: Record<string, string | number>): void {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (element.getAttribute(name) !== String(value)) element.setAttribute(name, String(value));
+  }
 }
 
 function subscript(number: number): string {

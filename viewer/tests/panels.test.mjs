@@ -1,0 +1,164 @@
+/** Panels keep their nodes: focus stays where it is, states move no elements, folded panels cost nothing. */
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { browserOfFile, enter, moveTarget, openPanel, scene, until, untilReached } from "./lib.mjs";
+
+const { visit } = browserOfFile();
+
+const CELL = fileURLToPath(new URL("../../docs/cell.toml", import.meta.url));
+
+/**
+ * Marks the element in focus, and later says whether the focus is still on it.
+ * @param {import("playwright-core").Page} page
+ */
+async function holdFocus(page) {
+  const held = await page.evaluateHandle(() => document.activeElement);
+  return async (/** @type {string} */ what) => {
+    // A scene is drawn with the frame after it.
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    const now = await page.evaluate((element) => (document.activeElement === element ? "" : (document.activeElement?.outerHTML ?? "").slice(0, 80)), held);
+    assert.equal(now, "", `the focus left ${what}`);
+  };
+}
+
+test("the focus stays on a switch of an actuated joint, on a list and on the buttons of the handle", () =>
+  visit(["five-bar"], async (page) => {
+    const actuator = page.locator('[data-actuator="q5"]');
+    await actuator.focus();
+    let same = await holdFocus(page);
+    await page.keyboard.press("Space");
+    await until(page, "scene.actuators.filter((joint) => joint.actuated).length === 3");
+    await same("the switch of q5");
+    assert.ok(await actuator.isChecked());
+    await page.keyboard.press("Space");
+    await until(page, "scene.actuators.filter((joint) => joint.actuated).length === 2");
+    await same("the switch of q5");
+    for (const [label, wanted] of /** @type {const} */ ([["Inverse", 'scene.method.name === "damped"'], ["Task", 'scene.task.name === "position"']])) {
+      const list = page.getByLabel(label, { exact: true });
+      await list.focus();
+      same = await holdFocus(page);
+      await list.selectOption(label === "Inverse" ? "damped" : "position");
+      await until(page, wanted);
+      await same(label);
+    }
+    for (const name of ["Move", "tool axes"]) {
+      await page.getByRole("button", { name, exact: true }).focus();
+      same = await holdFocus(page);
+      await page.keyboard.press("Enter");
+      await same(name);
+    }
+  }));
+
+test("the focus stays on Rotate, on a parameter of the inverse, on an overlay and on a field of an obstacle", () =>
+  visit([CELL], async (page) => {
+    const rotate = page.getByRole("button", { name: "Rotate", exact: true });
+    await rotate.focus();
+    let same = await holdFocus(page);
+    await page.keyboard.press("Enter");
+    await page.getByRole("button", { name: "Rotate", exact: true, pressed: true }).waitFor();
+    await same("Rotate");
+    await page.getByLabel("Inverse", { exact: true }).selectOption("damped");
+    await until(page, 'scene.method.name === "damped"');
+    const damping = page.getByLabel(/^damping/);
+    await damping.focus();
+    same = await holdFocus(page);
+    await enter(damping, 0.07);
+    await until(page, "scene.method.parameters.damping === 0.07");
+    await same("the field of the damping");
+    await page.locator('[data-overlay="joint-axes"]').focus();
+    same = await holdFocus(page);
+    await page.keyboard.press("Space");
+    await until(page, 'state.overlays["joint-axes"] !== undefined');
+    await same("the switch of an overlay");
+    const panel = await openPanel(page, "obstacles");
+    const add = panel.getByRole("button", { name: "Add" });
+    await add.focus();
+    same = await holdFocus(page);
+    await page.keyboard.press("Enter");
+    await until(page, "scene.obstacles.length === 1 && state.obstacles.length === 1");
+    await same("Add");
+    const z = panel.getByLabel("z of sphere 1 in the world frame (m)");
+    await z.focus();
+    same = await holdFocus(page);
+    await enter(z, 0.9);
+    await until(page, "Math.abs(state.obstacles[0].position[2] - 0.9) < 1e-9");
+    await page.evaluate(() => /** @type {any} */ (window).viewer.session.send({ type: "add_obstacle", name: "other", shape: { kind: "sphere", radius: 0.1 }, position: [2, 2, 2], quaternion: [1, 0, 0, 0] }));
+    await until(page, "scene.obstacles.length === 2 && state.obstacles.length === 2");
+    await same("the field of an obstacle");
+    await panel.getByRole("button", { name: "Remove sphere 1" }).focus();
+    await page.keyboard.press("Enter");
+    await until(page, 'scene.obstacles.length === 1 && scene.obstacles[0].name === "other"');
+    await page.waitForFunction(() => document.activeElement?.textContent === "Add");
+  }));
+
+test("a refused choice of actuated joints leaves the switch as the server has it", () =>
+  visit(["five-bar"], async (page) => {
+    await page.evaluate(() => {
+      const { session } = /** @type {any} */ (window).viewer;
+      const send = session.send.bind(session);
+      session.send = (/** @type {any} */ message) => send(message.type === "actuated" ? { ...message, names: ["nothing"] } : message);
+    });
+    const box = page.locator('[data-actuator="q5"]');
+    await box.click();
+    await page.locator(".toast.bad").waitFor();
+    assert.equal(await box.isChecked(), (await scene(page)).actuators.find(({ name }) => name === "q5")?.actuated);
+  }));
+
+const FOLDING = ["joints", "show", "servo", "pose", "singular", "screws"];
+
+for (const folded of [false, true]) {
+  test(`while the tool moves ${folded ? "folded panels do not change" : "panels and legend make no elements"}`, (t) =>
+    visit(["panda"], async (page) => {
+      await page.locator('[data-overlay="velocity-ellipsoid"]').check();
+      await page.locator('[data-overlay="joint-axes"]').check();
+      await until(page, 'state.overlays["joint-axes"] !== undefined && state.overlays["principal-screws"] !== undefined');
+      if (folded) {
+        for (const name of FOLDING) await page.locator(`[data-panel="${name}"] > summary`).click();
+        await until(page, 'state.overlays["principal-screws"] === undefined');
+      }
+      await page.evaluate((changesCount) => {
+        const { session } = /** @type {any} */ (window).viewer;
+        /** @type {{ states: number, work: number, changes: string[] }} */
+        const seen = { states: 0, work: 0, changes: [] };
+        const emit = session.emit.bind(session);
+        session.emit = (/** @type {string} */ event, /** @type {unknown} */ value) => {
+          const begin = performance.now();
+          emit(event, value);
+          if (event !== "state") return;
+          seen.work += performance.now() - begin;
+          seen.states += 1;
+        };
+        const observer = new MutationObserver((all) => {
+          for (const { type, target, addedNodes, attributeName } of all) {
+            const made = [...addedNodes].filter((node) => node instanceof Element);
+            if (changesCount || made.length > 0) seen.changes.push(`${type} ${attributeName ?? ""} of ${target.nodeName}: ${made.map((node) => node.nodeName).join()}`);
+          }
+        });
+        for (const body of document.querySelectorAll(".panel > .body, .legend")) {
+          if (!(changesCount && body.classList.contains("legend"))) observer.observe(body, { subtree: true, childList: true, attributes: changesCount, characterData: changesCount });
+        }
+        Object.assign(window, { seen });
+      }, folded);
+      await untilReached(page, await (folded ? sendTarget(page) : moveTarget(page, "z", -0.08)));
+      /** @type {{ states: number, work: number, changes: string[] }} */
+      const { states, work, changes } = await page.evaluate(() => /** @type {any} */ (window).seen);
+      t.diagnostic(`${(work / states).toFixed(2)} ms of JavaScript for a state, ${folded ? "panels folded" : "panels open"}`);
+      assert.ok(states > 5, `${states} states`);
+      assert.deepEqual([...new Set(changes)], []);
+    }));
+}
+
+/**
+ * Moves the target without the fields.
+ * @param {import("playwright-core").Page} page
+ */
+function sendTarget(page) {
+  return page.evaluate(() => {
+    const { session } = /** @type {any} */ (window).viewer;
+    const { position: [x, y, z], quaternion } = session.state.target;
+    const position = [x, y, z - 0.08];
+    session.send({ type: "target", position, quaternion });
+    return position;
+  });
+}
