@@ -16,10 +16,12 @@ export function layout(root: HTMLElement): Layout {
   const left = h("aside", { class: "side left", "aria-label": "Controls" });
   const right = h("aside", { class: "side right", "aria-label": "Measures" });
   const tools = h("div", { class: "float top", role: "toolbar", "aria-label": "View" });
-  const legend = h("div", { class: "legend", "aria-label": "Legend" });
+  const legend = h("div", { class: "legend", role: "region", "aria-label": "Legend", tabindex: 0 });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
   const toasts = h("div", { class: "toasts", role: "status", "aria-live": "polite" });
-  const stage = h("main", { class: "stage", "aria-label": "Robot" }, legend, tools, banner, toasts);
+  // The legend lies below the view, not over the robot.
+  const view = h("div", { class: "view" }, tools, banner, toasts);
+  const stage = h("main", { class: "stage", "aria-label": "Robot" }, view, legend);
   root.append(h("div", { class: "shell" }, bar, left, stage, right));
   const toast = (words: string, bad = false, key = words): void => {
     [...toasts.children].find((child) => child.getAttribute("data-key") === key)?.remove();
@@ -32,5 +34,5 @@ export function layout(root: HTMLElement): Layout {
     while (toasts.children.length > MOST_TOASTS) toasts.firstElementChild?.remove();
     setTimeout(() => made.remove(), TOAST_TIME);
   };
-  return { bar, left, right, stage, tools, legend, banner, toast };
+  return { bar, left, right, stage: view, tools, legend, banner, toast };
 }

@@ -6,6 +6,7 @@ import { Obstacles as ObstaclePanel } from "./controls/obstacles";
 import { ServoControls } from "./controls/servo";
 import { Switches } from "./controls/switches";
 import { Tools } from "./controls/tools";
+import { UnitControls } from "./controls/units";
 import { socketUrl } from "./connection";
 import { h } from "./dom";
 import { layout } from "./layout";
@@ -30,6 +31,7 @@ import { Stage } from "./scene/stage";
 import { Session } from "./session";
 import { fragment } from "./share";
 import { Target } from "./target";
+import { inUnits } from "./units";
 
 const root = document.getElementById("app");
 if (!root) throw new Error("the page has no element for the viewer");
@@ -91,7 +93,8 @@ function start(): void {
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
   reports.watch("mobility", mobility);
   reports.watch("manipulability", capability);
-  page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element);
+  page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element, new UnitControls().panel.element);
+  inUnits(page.right, redraw);
   page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
   // A folded panel is not kept up to date.
   for (const { onToggle } of [joints.panel, servo.panel, obstaclePanel.panel, pose, singular]) onToggle(redraw);
@@ -186,7 +189,7 @@ function start(): void {
     if (fitWanted) fitAll(scene);
     overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
     bar.show(state);
-    joints.show(scene, state);
+    joints.show(state);
     servo.show(state);
     obstacles.place(state, target.dragged());
     obstaclePanel.place(state);

@@ -1,9 +1,11 @@
 /** A slider for each coordinate, with limits and unit; and for closed chains a switch for each joint that can be actuated. */
 import { h, Kept, type Child } from "../dom";
-import { fixed, plain } from "../format";
+import { fixed } from "../format";
 import { panel } from "../panels/panel";
 import type { Coordinate, Actuator, Scene, State } from "../protocol";
 import type { Session } from "../session";
+import { digitsOf, inUnits, shown, unitOf, withUnit, type Quantity } from "../units";
+import { QuantityField } from "../quantity_field";
 
 /** Where the file gives no limit a slider still needs an end (rad, or share of the reach). */
 const FREE_TURN = Math.PI;
@@ -13,7 +15,7 @@ const QUIET = 300;
 /** More coordinates than these of a closed chain are folded away where they are passive at the start. */
 const MANY = 12;
 
-type Row = { element: HTMLElement; slider: HTMLInputElement; field: HTMLInputElement; touched: number };
+type Row = { element: HTMLElement; slider: HTMLInputElement; field: QuantityField; touched: number };
 
 export class Joints {
   readonly panel = panel("joints", "Joints", true);
@@ -34,7 +36,7 @@ export class Joints {
     this.kept.list.fill([scene.name, fixedParts, scene.actuators.map(({ name }) => name)], () => this.rowsOf(scene));
     scene.coordinates.forEach(({ adjustable }, i) => {
       const row = this.rows[i];
-      if (row) row.slider.disabled = row.field.disabled = !adjustable;
+      if (row) row.slider.disabled = row.field.element.disabled = !adjustable;
     });
     for (const { name, actuated } of scene.actuators) {
       const box = this.actuators.get(name);
@@ -67,7 +69,7 @@ export class Joints {
     ];
   }
 
-  show(scene: Scene, state: State): void {
+  show(state: State): void {
     if (!this.panel.isOpen()) return;
     const now = performance.now();
     const outside = new Set(state.outside_limits);
@@ -76,38 +78,43 @@ export class Joints {
       row.element.classList.toggle("outside", outside.has(i));
       if (now - row.touched < QUIET) return;
       setSlider(row.slider, value);
-      row.slider.setAttribute("aria-valuetext", `${fixed(value, 3)} ${scene.coordinates[i]?.unit ?? ""}`);
-      if (document.activeElement !== row.field) row.field.value = plain(value);
+      row.slider.setAttribute("aria-valuetext", inWords(value, row.field.quantity));
+      row.field.show(value);
     });
     if (this.selfSlider && document.activeElement !== this.selfSlider) setSlider(this.selfSlider, state.servo.self_motion);
   }
 
   /** What was asked for may not have been reached: shows what is. */
   private settle(): void {
-    const { scene, state } = this.session;
-    if (scene && state) this.show(scene, state);
+    if (this.session.state) this.show(this.session.state);
   }
 
   private row(scene: Scene, coordinate: Coordinate, actuator: Actuator | undefined): Row {
     const { name, unit, adjustable } = coordinate;
     const free = unit === "rad" ? FREE_TURN : scene.reach;
     const [low, high] = [coordinate.lower ?? -free, coordinate.upper ?? free];
-    const slider = h("input", { type: "range", min: low, max: high, step: "any", disabled: !adjustable, "aria-label": `${name} [${unit}]`, "data-joint": name });
-    const field = h("input", { type: "number", class: "field", step: "any", disabled: !adjustable, "aria-label": `${name} as a number [${unit}]` });
-    if (coordinate.lower !== null) field.min = String(low);
-    if (coordinate.upper !== null) field.max = String(high);
+    const slider = h("input", { type: "range", min: low, max: high, step: "any", disabled: !adjustable, "data-joint": name });
+    const field = new QuantityField(unit, (shownUnit) => `${name} as a number [${shownUnit}]`, (value) => move(value), { disabled: !adjustable });
     const label = actuator ? this.actuatorSwitch(actuator, name) : h("span", { class: "name", title: name }, name);
+    const limits = [coordinate.lower, coordinate.upper].map(() => h("span", { class: "limit" }));
     const element = h(
       "div", { class: "joint" },
       label,
-      h("span", { class: "value" }, field, h("span", { class: "unit" }, unit)),
-      h("div", { class: "track" },
-        h("span", { class: "limit" }, coordinate.lower === null ? "−∞" : fixed(low, 2)), slider,
-        h("span", { class: "limit" }, coordinate.upper === null ? "∞" : fixed(high, 2))),
+      h("span", { class: "value" }, field.element, withUnit(h("span", { class: "unit" }), unit, (shownUnit) => shownUnit)),
+      h("div", { class: "track" }, limits[0], slider, limits[1]),
     );
+    inUnits(slider, () => {
+      slider.setAttribute("aria-label", `${name} [${unitOf(unit)}]`);
+      slider.setAttribute("aria-valuetext", inWords(slider.valueAsNumber, unit));
+      [coordinate.lower, coordinate.upper].forEach((value, i) => {
+        const [end, bound] = [limits[i], value === null ? "" : inLimits(value, unit)];
+        if (end) [end.textContent, end.title] = [bound || (i === 0 ? "−∞" : "∞"), bound && `${shown(value ?? 0, unit)} ${unitOf(unit)}`];
+        const attribute = i === 0 ? "min" : "max";
+        if (value !== null) field.element.setAttribute(attribute, String(shown(value, unit)));
+      });
+    });
     const row: Row = { element, slider, field, touched: -Infinity };
     const move = (value: number): void => {
-      if (!Number.isFinite(value)) return;
       row.touched = performance.now();
       setSlider(slider, value);
       this.session.sendSoon(`joint ${name}`, { type: "joint", name, value });
@@ -115,11 +122,10 @@ export class Joints {
       this.timer = window.setTimeout(() => this.settle(), QUIET + 30);
     };
     slider.addEventListener("input", () => {
-      field.value = plain(slider.valueAsNumber);
+      field.show(slider.valueAsNumber);
       move(slider.valueAsNumber);
     });
     slider.addEventListener("keydown", (event) => stepByKey(event, slider, (high - low) / 200));
-    field.addEventListener("change", () => move(field.valueAsNumber));
     return row;
   }
 
@@ -163,6 +169,15 @@ export class Joints {
   }
 }
 
+function inWords(value: number, unit: Quantity): string {
+  return `${fixed(shown(value, unit), digitsOf(unit, 3))} ${unitOf(unit)}`;
+}
+
+/** A limit in as many digits as there is room for. */
+function inLimits(value: number, unit: Quantity): string {
+  return String(Number(shown(value, unit).toPrecision(5))).replace("-", "−");
+}
+
 /** Sliders with step "any" would jump by the browser's own step. */
 function stepByKey(event: KeyboardEvent, slider: HTMLInputElement, step: number): void {
   const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
@@ -179,4 +194,3 @@ function setSlider(slider: HTMLInputElement, value: number): void {
   const share = high > low ? (Math.min(high, Math.max(low, value)) - low) / (high - low) : 0.5;
   slider.style.setProperty("--filled", `${(share * 100).toFixed(2)}%`);
 }
-

@@ -1,12 +1,14 @@
 /** Obstacles: added, moved by fields or the handle, removed; and the switch that makes the servo avoid them. */
 import { fill, h } from "../dom";
-import { plain } from "../format";
 import { panel } from "../panels/panel";
 import type { Obstacle, Pose, Scene, SimpleShape, State, Vec3 } from "../protocol";
 import type { Session } from "../session";
+import { withUnit } from "../units";
+import { PoseFields } from "./pose_fields";
+import { fieldLine, QuantityField } from "../quantity_field";
 
 type Kind = "sphere" | "box";
-type Row = { element: HTMLElement; fields: HTMLInputElement[] };
+type Row = { element: HTMLElement; fields: PoseFields };
 /** The size of a new obstacle, and its distance from the tool, as shares of the reach. */
 const SIZE = 0.1;
 const ASIDE = 0.5;
@@ -14,11 +16,12 @@ const ASIDE = 0.5;
 export class Obstacles {
   readonly panel = panel("obstacles", "Obstacles", false);
   private readonly avoid = h("input", { type: "checkbox", class: "switch", role: "switch", "data-avoid": "" });
-  private readonly gap = this.distance("Least distance (m)", "gap");
-  private readonly margin = this.distance("Distance below which pairs of bodies count (m)", "margin");
+  private readonly gap = this.distance("Least distance", "gap", 0.01);
+  private readonly margin = this.distance("Distance below which pairs of bodies count", "margin", 0.3);
   private readonly kind = h("select", { class: "select", "aria-label": "Shape of a new obstacle" }, h("option", { value: "sphere" }, "sphere"), h("option", { value: "box" }, "box"));
   private readonly sizes = h("span", { class: "three" });
-  private readonly listTitle = h("h3", { hidden: true }, "Positions [m]; the name puts the handle on it");
+  private edges: QuantityField[] = [];
+  private readonly listTitle = h("h3", { hidden: true }, "Poses; the name puts the handle on it");
   private readonly list = h("div", {});
   private readonly rows = new Map<string, Row>();
   private readonly addButton = h("button", { class: "button small", type: "button", onclick: () => this.add() }, "Add");
@@ -30,9 +33,9 @@ export class Obstacles {
     this.panel.body.append(
       h("label", { class: "row" }, this.avoid, h("span", {}, "Avoid collisions")),
       h("p", { class: "note" }, "The servo then solves least squares with inequalities, and the inverse below has no effect."),
-      h("div", { class: "line" }, h("span", { class: "note" }, "Keep [m]"), this.gap),
-      h("div", { class: "line" }, h("span", { class: "note" }, "Margin [m]"), this.margin),
-      h("h3", {}, "New obstacle, size [m]"),
+      fieldLine("Keep", this.gap),
+      fieldLine("Margin", this.margin),
+      withUnit(h("h3", {}), "m", (unit) => `New obstacle, size [${unit}]`),
       h("div", { class: "new-obstacle" }, this.kind, this.sizes, this.addButton),
       this.listTitle,
       this.list,
@@ -42,7 +45,10 @@ export class Obstacles {
   build(scene: Scene): void {
     const { avoidance, obstacles } = scene;
     this.avoid.checked = avoidance !== null;
-    if (avoidance) [this.gap.value, this.margin.value] = [String(avoidance.gap), String(avoidance.margin)];
+    if (avoidance) {
+      this.gap.show(avoidance.gap);
+      this.margin.show(avoidance.margin);
+    }
     if (!this.sizes.hasChildNodes()) this.offerSizes();
     this.panel.note([obstacles.length > 0 ? String(obstacles.length) : "", avoidance ? "avoided" : ""].filter(Boolean).join(", "));
     this.keep(obstacles);
@@ -68,14 +74,17 @@ export class Obstacles {
   }
 
   private row(name: string, kind: string): Row {
-    const fields = ["x", "y", "z"].map((axis, k) => h("input", { class: "field", type: "number", step: "any", "aria-label": `${axis} of ${name} in the world frame (m)`, "data-obstacle": `${name} ${axis}`, onchange: () => this.move(name, k) }));
+    const fields = new PoseFields(
+      { label: (part) => `${part} of ${name} in the world frame`, mark: (part) => ({ "data-obstacle": `${name} ${part}` }), orientation: kind !== "sphere" },
+      (pose) => this.drag(name, pose),
+    );
     const element = h(
       "div", { class: "obstacle", "data-row": name },
       h("span", { class: "row" },
         h("button", { class: "button small name", type: "button", title: `Drag ${name} in the view`, "aria-pressed": "false", onclick: () => this.hold(this.held === name ? null : name) }, name),
         h("span", { class: "note" }, kind.replaceAll("_", "-")),
         h("button", { class: "button small remove", type: "button", title: `Remove ${name}`, "aria-label": `Remove ${name}`, onclick: () => this.session.send({ type: "remove_obstacle", name }) }, "×")),
-      h("span", { class: "three" }, ...fields),
+      fields.element,
     );
     return { element, fields };
   }
@@ -88,33 +97,37 @@ export class Obstacles {
 
   place(state: State): void {
     if (!this.panel.isOpen()) return;
-    this.session.scene?.obstacles.forEach(({ name }, i) => this.rows.get(name)?.fields.forEach((field, k) => {
-      if (document.activeElement !== field) field.value = plain(state.obstacles[i]?.position[k] ?? 0);
-    }));
+    this.session.scene?.obstacles.forEach(({ name }, i) => {
+      const pose = state.obstacles[i];
+      if (pose) this.rows.get(name)?.fields.show(pose);
+    });
   }
 
-  private distance(label: string, name: string): HTMLInputElement {
-    return h("input", { class: "field", type: "number", step: "any", min: 0, value: name === "gap" ? "0.01" : "0.3", "aria-label": label, "data-avoidance": name, onchange: () => {
+  private distance(label: string, name: string, value: number): QuantityField {
+    const field = new QuantityField("m", (unit) => `${label} (${unit})`, () => {
       if (this.avoid.checked) this.sendAvoidance();
-    } });
+    }, { min: 0, "data-avoidance": name });
+    field.show(value);
+    return field;
   }
 
   private sendAvoidance(): void {
-    const [gap, margin] = [this.gap, this.margin].map((field) => (Number.isFinite(field.valueAsNumber) ? field.valueAsNumber : null));
-    this.session.send({ type: "avoid_collisions", on: this.avoid.checked, gap: gap ?? null, margin: margin ?? null });
+    this.session.send({ type: "avoid_collisions", on: this.avoid.checked, gap: this.gap.value, margin: this.margin.value });
   }
 
   private offerSizes(): void {
     const size = Number((SIZE * (this.session.scene?.reach ?? 1)).toPrecision(1));
     const names = this.kind.value === "sphere" ? ["radius"] : ["x", "y", "z"];
     const value = this.kind.value === "sphere" ? size : 2 * size;
-    fill(this.sizes, ...names.map((name) => h("input", { class: "field", type: "number", step: "any", min: 0, value, "aria-label": name === "radius" ? "Radius of the new sphere (m)" : `Edge of the new box along ${name} (m)`, "data-size": name })));
+    this.edges = names.map((name) => new QuantityField("m", (unit) => (name === "radius" ? `Radius of the new sphere (${unit})` : `Edge of the new box along ${name} (${unit})`), () => undefined, { min: 0, "data-size": name }));
+    for (const edge of this.edges) edge.show(value);
+    fill(this.sizes, ...this.edges.map(({ element }) => element));
   }
 
   private add(): void {
     const { scene, state } = this.session;
     if (!scene || !state) return;
-    const sizes = [...this.sizes.querySelectorAll("input")].map((field) => field.valueAsNumber);
+    const sizes = this.edges.map((edge) => edge.value);
     const kind = this.kind.value as Kind;
     if (sizes.some((size) => !Number.isFinite(size))) return;
     const shape: SimpleShape = kind === "sphere" ? { kind, radius: sizes[0] ?? 0 } : { kind, size: sizes as Vec3 };
@@ -131,15 +144,6 @@ export class Obstacles {
   /** An obstacle that was added and is not yet at the handle. */
   get added(): string | null {
     return this.held;
-  }
-
-  private move(name: string, k: number): void {
-    const { scene, state } = this.session;
-    const pose = state?.obstacles[scene?.obstacles.findIndex((other) => other.name === name) ?? -1];
-    const value = this.rows.get(name)?.fields[k]?.valueAsNumber ?? NaN;
-    if (!pose || !Number.isFinite(value)) return;
-    const position = pose.position.map((was, axis) => (axis === k ? value : was)) as Vec3;
-    this.drag(name, { position, quaternion: pose.quaternion });
   }
 
   /** Sends the newest pose of an obstacle that is moved. */

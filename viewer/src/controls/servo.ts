@@ -5,7 +5,7 @@ import type { Scene, State } from "../protocol";
 import type { Session } from "../session";
 import { Choice, type Option } from "./choice";
 import { InverseParameters } from "./inverse_parameters";
-import { TargetFields } from "./target_fields";
+import { PoseFields } from "./pose_fields";
 import { VelocityPad } from "./velocity_pad";
 
 const TASKS: Option[] = [
@@ -18,7 +18,10 @@ const PITCH = 0.1;
 
 export class ServoControls {
   readonly panel = panel("servo", "Servo", true);
-  private readonly target: TargetFields;
+  private readonly target = new PoseFields(
+    { label: (part) => `Target ${part} in the world frame`, mark: (part) => ({ "data-target": part }), orientation: true },
+    (pose) => this.session.sendSoon("target", { type: "target", ...pose }),
+  );
   private readonly pad: VelocityPad;
   private readonly frame = new Choice("Frame", (name) => this.session.send({ type: "frame", name }));
   private readonly task = new Choice("Task", (name) => this.session.send({ type: "task", name }));
@@ -27,15 +30,14 @@ export class ServoControls {
   private readonly needsAll = h("p", { class: "note" }, "Hyperbolic inverses require a task of all six components; Compare always offers them.");
 
   constructor(private readonly session: Session) {
-    this.target = new TargetFields(session);
     this.pad = new VelocityPad(session);
     this.parameters = new InverseParameters(session);
-    this.panel.body.append(...[this.target, this.pad, this.frame, this.task, this.inverse, this.parameters].map(({ element }) => element), this.needsAll);
+    this.panel.body.append(h("h3", {}, "Target"), this.target.element, ...[this.pad, this.frame, this.task, this.inverse, this.parameters].map(({ element }) => element), this.needsAll);
   }
 
   show(state: State): void {
     if (!this.panel.isOpen()) return;
-    this.target.show(state);
+    this.target.show(state.target);
     this.pad.show(state);
   }
 

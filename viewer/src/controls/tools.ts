@@ -17,7 +17,7 @@ export class Tools {
   private readonly handles = {
     target: small(null, () => this.handle("target"), "target"),
     point: small(null, () => this.handle("point"), "reference point"),
-    obstacle: small(null, () => undefined),
+    obstacle: small(null, () => undefined, "obstacle"),
   };
   private hasPoint = false;
   private inTool = false;
@@ -95,7 +95,7 @@ export class Tools {
     press(target, now === "target");
     press(point, now === "point");
     press(held, obstacle !== null);
-    text(held, obstacle ?? "");
+    text(held, obstacle ?? "obstacle");
     target.hidden = !this.hasPoint && obstacle === null;
     point.hidden = !this.hasPoint;
     held.hidden = obstacle === null;

@@ -1,8 +1,10 @@
 /** Two inverses side by side, and their joint velocities for a moved reference point. */
 import { fill, h, Kept } from "../dom";
-import { fixed, plain, short } from "../format";
+import { fixed, short } from "../format";
 import type { Comparison, Scene, Vec3 } from "../protocol";
 import type { Session } from "../session";
+import { QuantityField } from "../quantity_field";
+import { withUnit } from "../units";
 import { empty, panel, type Panel } from "./panel";
 
 const PAUSE = 200;
@@ -14,7 +16,7 @@ export class Compare {
   private readonly second = h("select", { class: "select", "aria-label": "Second inverse" });
   private readonly kept = [this.first, this.second].map((choice) => new Kept(choice));
   private readonly pitch = h("input", { class: "field", type: "number", step: "any", value: "0.1", "aria-label": "Pitch h of hyperbolic inverses (m/rad)" });
-  private readonly fields = [0, 1, 2].map((i) => h("input", { class: "field", type: "number", step: "any", "aria-label": `Reference point ${"xyz"[i]} (m)`, oninput: () => this.typed() }));
+  private readonly fields = [0, 1, 2].map((i) => new QuantityField("m", (unit) => `Reference point ${"xyz"[i]} (${unit})`, () => this.typed()));
   private readonly pitchRow = h("p", { class: "row" }, h("label", {}, h("span", { class: "note" }, "pitch h"), this.pitch, h("span", { class: "unit" }, "m/rad")));
   private readonly form: HTMLElement;
   private readonly result = h("div", {});
@@ -30,8 +32,8 @@ export class Compare {
       "div", {},
       h("p", { class: "pair" }, this.first, this.second),
       this.pitchRow,
-      h("h3", {}, "Reference point in the world frame [m]; can be dragged in the view"),
-      h("p", { class: "three" }, ...this.fields),
+      withUnit(h("h3", {}), "m", (unit) => `Reference point in the world frame [${unit}]; can be dragged in the view`),
+      h("p", { class: "three" }, ...this.fields.map(({ element }) => element)),
     );
     this.panel.body.append(this.form, this.result);
     this.panel.onToggle((open) => {
@@ -67,9 +69,7 @@ export class Compare {
 
   movePoint(point: Vec3): void {
     this.point = point;
-    this.fields.forEach((field, i) => {
-      if (document.activeElement !== field) field.value = plain(point[i] ?? 0, 3);
-    });
+    this.fields.forEach((field, i) => field.show(point[i] ?? 0));
     this.later();
   }
 
@@ -78,7 +78,7 @@ export class Compare {
   }
 
   private typed(): void {
-    const values = this.fields.map((field) => field.valueAsNumber);
+    const values = this.fields.map((field) => field.value);
     if (values.some((value) => !Number.isFinite(value))) return;
     this.point = values as Vec3;
     this.pointMoved(this.point);

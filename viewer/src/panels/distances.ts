@@ -7,6 +7,8 @@ import { drawn } from "../scene/palette";
 import type { Labels } from "../scene/labels";
 import { discard, rod, vector } from "../scene/shapes";
 import type { Session } from "../session";
+import { digitsOf, inUnits, shown, unitOf } from "../units";
+import { fieldLine, QuantityField } from "../quantity_field";
 import { empty, grid, panel, type Grid } from "./panel";
 
 const MARGIN = 0.2;
@@ -16,7 +18,7 @@ BALL.userData["shared"] = true;
 export class Distances {
   readonly panel = panel("distances", "Distances", false);
   readonly group = new Group();
-  private readonly margin = h("input", { class: "field", type: "number", step: "any", min: 0, value: MARGIN, "aria-label": "Only pairs closer than this (m)", "data-margin": "" });
+  private readonly margin = new QuantityField("m", (unit) => `Only pairs closer than this (${unit})`, () => this.ask(), { min: 0, "data-margin": "" });
   private readonly list = h("div", {});
   private readonly kept = new Kept(this.list);
   private table: Grid | null = null;
@@ -26,13 +28,14 @@ export class Distances {
 
   constructor(private readonly session: Session, private readonly labels: Labels, private readonly redraw: () => void, showShapes: (shown: boolean) => void) {
     this.panel.body.append(
-      h("div", { class: "line" }, h("span", { class: "note" }, "Within [m]"), this.margin),
+      fieldLine("Within", this.margin),
       h("label", { class: "row" }, this.shapes, h("span", {}, "Collision shapes")),
       this.list,
     );
     const show = (): void => showShapes(this.shapes.checked && this.panel.isOpen());
     this.shapes.addEventListener("change", show);
-    this.margin.addEventListener("change", () => this.ask());
+    this.margin.show(MARGIN);
+    inUnits(this.list, () => this.redraw());
     this.panel.onToggle((open) => {
       this.ask();
       if (!open) this.clear();
@@ -43,9 +46,7 @@ export class Distances {
 
   /** Asks for distances as long as the panel is open. */
   ask(): void {
-    const margin = this.margin.valueAsNumber;
-    if (this.panel.isOpen() && !Number.isFinite(margin)) return;
-    this.session.send({ type: "distances", margin: this.panel.isOpen() ? margin : null });
+    this.session.send({ type: "distances", margin: this.panel.isOpen() ? this.margin.value : null });
   }
 
   draw(scene: Scene, state: State, size: number): void {
@@ -54,19 +55,19 @@ export class Distances {
     if (!this.panel.isOpen() || !distances) return;
     const { near, more, pairs, shapes, margin } = distances;
     const stops = (one: Near): boolean => state.servo.pair !== null && state.servo.pair.join() === [one.a, one.b].join();
-    this.panel.note(near.length > 0 ? `nearest ${fixed(near[0]?.distance, 3)} m` : "");
+    this.panel.note(near.length > 0 ? `nearest ${length(near[0]?.distance ?? 0, 3)} ${unitOf("m")}` : "");
     for (const one of near) this.line(one, stops(one) || one.distance <= 0 ? "c-lost" : "c-distance", size);
     this.labels.set("distances", near.map((one) => ({
-      text: `${fixed(one.distance, 3)} m`,
+      text: `${length(one.distance, 3)} ${unitOf("m")}`,
       at: vector(one.point_a).lerp(vector(one.point_b), 0.5),
       colour: stops(one) || one.distance <= 0 ? "c-lost" : "c-distance",
     })));
     const noLinks = pairs === 0 && scene.obstacles.length === 0;
-    this.kept.fill([near.map(({ a, b }) => [a, b]), more, pairs, shapes, margin, noLinks], () => {
-      this.table = grid("Distances of bodies", ["", "distance [m]"], near.map(({ a, b }) => h("span", { title: `${a} and ${b}` }, a, h("br"), b)), "near");
+    this.kept.fill([near.map(({ a, b }) => [a, b]), more, pairs, shapes, margin, noLinks, unitOf("m")], () => {
+      this.table = grid("Distances of bodies", ["", `distance [${unitOf("m")}]`], near.map(({ a, b }) => h("span", { title: `${a} and ${b}` }, a, h("br"), b)), "near");
       return [
         shapes === 0 && empty("No link of this model has a collision shape."),
-        shapes > 0 && near.length === 0 && empty(`None of ${pairs} pairs is closer than ${fixed(margin, 3)} m.`),
+        shapes > 0 && near.length === 0 && empty(`None of ${pairs} pairs is closer than ${length(margin, 3)} ${unitOf("m")}.`),
         near.length > 0 && this.table.element,
         near.length > 0 && h("p", { class: "note" }, `${near.length + more} of ${pairs} pairs${more > 0 ? `; the nearest ${near.length} are shown` : ""}`),
         shapes > 0 && noLinks && h("p", { class: "note" }, "Links that a joint connects are not watched."),
@@ -77,7 +78,7 @@ export class Distances {
       if (!row) return;
       row.className = stops(one) ? "stops" : "";
       Object.assign(row.dataset, { near: `${one.a} ${one.b}`, value: one.distance });
-      this.table?.set(i, [fixed(one.distance, 4)]);
+      this.table?.set(i, [length(one.distance, 4)]);
     });
   }
 
@@ -102,4 +103,8 @@ export class Distances {
       this.group.add(part);
     }
   }
+}
+
+function length(metres: number, digits: number): string {
+  return fixed(shown(metres, "m"), digitsOf("m", digits));
 }

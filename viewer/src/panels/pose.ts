@@ -1,12 +1,14 @@
 /** Where the tool is, where it should be, and what the servo says. */
-import { h, text } from "../dom";
+import { h, Kept, text } from "../dom";
 import { fixed, short } from "../format";
-import type { Quaternion, Scene, State } from "../protocol";
+import type { Pose, Quaternion, Scene, State } from "../protocol";
+import { chosenUnits, digitsOf, nearestTurn, rollPitchYaw, shown, unitOf, type Quantity } from "../units";
 import { facts, grid, panel, type Panel } from "./panel";
 
 const WORDS = { moving: "moving", reached: "reached", stalled: "stalled", paused: "paused", unavailable: "not available" };
 const GOOD = { moving: "", reached: "good", stalled: "bad", paused: "", unavailable: "bad" };
-const ROWS = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+const POSITION = ["x", "y", "z"];
+const ORIENTATION = { quaternion: ["qw", "qx", "qy", "qz"], "roll, pitch, yaw": ["roll", "pitch", "yaw"] };
 
 export function posePanel(): Panel & { show: (scene: Scene, state: State) => void } {
   const made = panel("pose", "Pose and error", true);
@@ -15,10 +17,11 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
   const status = h("p", {}, verdict, " ", sentence);
   const limits = h("p", { class: "note" });
   const open = h("p", { class: "doubt" });
-  const names = ROWS.map((name, i) => h("span", { "data-pose": name }, name, i < 3 && h("span", { class: "unit" }, " m")));
-  const table = grid("Pose of tool and target", ["", "tool", "target"], names);
-  const error = facts(["distance [m]", "angle [rad]"]);
-  made.body.append(status, limits, open, table.element, h("h3", {}, "Error of the task components"), error.element);
+  const numbers = h("div", {});
+  const kept = new Kept(numbers);
+  let table = poseTable();
+  let error = errorList();
+  made.body.append(status, limits, open, numbers);
   return {
     ...made,
     show(scene, state) {
@@ -34,20 +37,56 @@ export function posePanel(): Panel & { show: (scene: Scene, state: State) => voi
       text(limits, `At limits: ${stops.join(", ")}`);
       open.hidden = !closure || closure.closed;
       if (closure) text(open, `Loops are open by ${short(closure.distance)} m, ${short(closure.angle)} rad`);
-      const tool = [...state.tool.position, ...state.tool.quaternion];
-      const target = [...state.target.position, ...nearer(state.target.quaternion, state.tool.quaternion)];
-      names.forEach((name, i) => {
-        name.dataset["value"] = String(tool[i]);
-        table.set(i, [fixed(tool[i], 5), fixed(target[i], 5)]);
+      kept.fill(chosenUnits(), () => {
+        [table, error] = [poseTable(), errorList()];
+        return [table.element, h("h3", {}, "Error of the task components"), error.element];
       });
-      error.set(0, fixed(state.error.position, 6));
-      error.set(1, fixed(state.error.orientation, 6));
+      table.show(state.tool, state.target);
+      error.set(0, inUnit(state.error.position, "m", 6));
+      error.set(1, inUnit(state.error.orientation, "rad", 6));
     },
   };
+}
+
+function errorList(): ReturnType<typeof facts> {
+  return facts([`distance [${unitOf("m")}]`, `angle [${unitOf("rad")}]`]);
+}
+
+function poseTable(): { element: HTMLElement; show: (tool: Pose, target: Pose) => void } {
+  const { orientation } = chosenUnits();
+  const quantities: Quantity[] = [...POSITION.map(() => "m" as const), ...ORIENTATION[orientation].map(() => (orientation === "quaternion" ? "" : "rad") as Quantity)];
+  const names = [...POSITION, ...ORIENTATION[orientation]].map((name, i) => {
+    const unit = unitOf(quantities[i] ?? "");
+    return h("span", { "data-pose": name }, name, unit && h("span", { class: "unit" }, ` ${unit}`));
+  });
+  const table = grid("Pose of tool and target", ["", "tool", "target"], names);
+  return {
+    element: table.element,
+    show(tool, target) {
+      const [here, there] = orientation === "quaternion"
+        ? [tool.quaternion, nearer(target.quaternion, tool.quaternion)]
+        : nearerTurns(rollPitchYaw(tool.quaternion), rollPitchYaw(target.quaternion));
+      const [a, b] = [[...tool.position, ...here], [...target.position, ...there]];
+      names.forEach((name, i) => {
+        const quantity = quantities[i] ?? "";
+        name.dataset["value"] = String(a[i]);
+        table.set(i, [inUnit(a[i] ?? 0, quantity, 5), inUnit(b[i] ?? 0, quantity, 5)]);
+      });
+    },
+  };
+}
+
+function inUnit(value: number, quantity: Quantity, digits: number): string {
+  return fixed(shown(value, quantity), digitsOf(quantity, digits));
 }
 
 /** Of the two quaternions of a rotation the one nearer to another. */
 function nearer(quaternion: Quaternion, to: Quaternion): Quaternion {
   const product = quaternion.reduce((sum, x, i) => sum + x * (to[i] ?? 0), 0);
   return product < 0 ? (quaternion.map((x) => -x) as Quaternion) : quaternion;
+}
+
+/** Angles of the target by a turn nearest to those of the tool. */
+function nearerTurns(tool: number[], target: number[]): [number[], number[]] {
+  return [tool, target.map((angle, i) => nearestTurn(angle, tool[i] ?? 0))];
 }
