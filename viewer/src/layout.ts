@@ -20,7 +20,8 @@ export function layout(root: HTMLElement): Layout {
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
   const toasts = h("div", { class: "toasts", role: "status", "aria-live": "polite" });
   // The legend lies below the view, not over the robot.
-  const view = h("div", { class: "view" }, tools, banner, toasts);
+  const picture = h("div", { class: "picture" });
+  const view = h("div", { class: "view" }, picture, tools, banner, toasts);
   const stage = h("main", { class: "stage", "aria-label": "Robot" }, view, legend);
   root.append(h("div", { class: "shell" }, bar, left, stage, right));
   const toast = (words: string, bad = false, key = words): void => {
@@ -34,5 +35,5 @@ export function layout(root: HTMLElement): Layout {
     while (toasts.children.length > MOST_TOASTS) toasts.firstElementChild?.remove();
     setTimeout(() => made.remove(), TOAST_TIME);
   };
-  return { bar, left, right, stage: view, tools, legend, banner, toast };
+  return { bar, left, right, stage: picture, tools, legend, banner, toast };
 }

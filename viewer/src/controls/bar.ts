@@ -35,7 +35,7 @@ export class Bar {
     );
     this.saves.hidden = true;
     bar.append(
-      h("div", { class: "brand" }, h("img", { src: "./icon.svg", alt: "" }), "cylindroid"),
+      h("h1", { class: "brand" }, h("img", { src: "./icon.svg", alt: "" }), "cylindroid"),
       this.model,
       h("div", { class: "spread" }),
       this.play,
@@ -43,7 +43,7 @@ export class Bar {
       h("span", { class: "rule" }),
       this.record,
       this.saves,
-      button("Save a picture", "picture", actions.picture, "PNG"),
+      button("Save a picture as PNG", "picture", actions.picture, "PNG"),
       button("Copy a link to this configuration", "share", actions.share, "Link"),
       this.themeButton,
       this.status,

@@ -14,7 +14,7 @@ const KEY = "cylindroid-panel-";
 export function panel(name: string, title: string, open: boolean): Panel {
   const words = h("span", { class: "note" });
   const body = h("div", { class: "body" });
-  const element = h("details", { class: "panel", "data-panel": name }, h("summary", {}, title, words), body);
+  const element = h("details", { class: "panel", "data-panel": name }, h("summary", {}, h("h2", {}, title), words), body);
   element.open = remembered(name) ?? open;
   element.addEventListener("toggle", () => {
     try {

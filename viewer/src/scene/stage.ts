@@ -15,6 +15,11 @@ const FROM: Record<View, [number, number, number]> = {
   top: [0, -0.0001, 1],
 };
 
+/** One key press of zooming, of turning (in steps of OrbitControls) and of panning (pixels). */
+const ZOOM = 1.15;
+const KEY_TURN = 6;
+const KEY_PAN = 24;
+
 export class Stage {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(35, 1, 0.01, 100);
@@ -36,12 +41,17 @@ export class Stage {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "application");
-    canvas.setAttribute("aria-label", "View of the robot. Drag to rotate, wheel to zoom, right button to pan; arrow keys pan, with Shift they rotate, F fits all.");
+    canvas.setAttribute("aria-label", "View of the robot. Drag to rotate, wheel to zoom, right button to pan; arrow keys pan, with Shift they rotate, plus and minus zoom, F fits all.");
     element.prepend(canvas);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener("change", () => this.invalidate());
     this.orbit.listenToKeyEvents(canvas);
+    [this.orbit.keyRotateSpeed, this.orbit.keyPanSpeed] = [KEY_TURN, KEY_PAN];
+    canvas.addEventListener("keydown", ({ key, ctrlKey, metaKey, altKey }) => {
+      const way = { "+": -1, "=": -1, "-": 1 }[key];
+      if (way !== undefined && !(ctrlKey || metaKey || altKey)) this.zoom(ZOOM ** way);
+    });
     this.lights(!slow);
     new ResizeObserver(() => this.resize()).observe(element);
     onTheme(() => this.paint());
@@ -90,6 +100,14 @@ export class Stage {
 
   view(view: View): void {
     this.look(new Vector3(...FROM[view]));
+  }
+
+  /** Brings the camera to this share of its distance. */
+  private zoom(share: number): void {
+    const { target } = this.orbit;
+    this.camera.position.sub(target).multiplyScalar(share).add(target);
+    this.orbit.update();
+    this.invalidate();
   }
 
   private look(direction: Vector3): void {

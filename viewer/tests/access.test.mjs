@@ -1,0 +1,139 @@
+/** For everybody: axe-core finds no violation, light and dark, wide and narrow; every action has a key. */
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { test } from "node:test";
+import { fileURLToPath } from "node:url";
+import { apart, browserOfFile, openPanel, served, showOverlay, until } from "./lib.mjs";
+
+const { look, visit } = browserOfFile();
+
+const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const CELL = fileURLToPath(new URL("../../docs/cell.toml", import.meta.url));
+const PANELS = ["joints", "show", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
+
+/**
+ * What axe-core finds, best practices among it.
+ * @param {import("playwright-core").Page} page
+ * @returns {Promise<string[]>}
+ */
+async function violations(page) {
+  await page.evaluate(AXE);
+  return page.evaluate(async () => {
+    const { violations: found } = await /** @type {any} */ (window).axe.run(document, { resultTypes: ["violations"] });
+    return found.flatMap((/** @type {any} */ one) => one.nodes.map((/** @type {any} */ node) => `${one.id}: ${node.target.join(" ")} ${node.failureSummary}`));
+  });
+}
+
+/** @type {[string, string[]][]} */
+const MODELS = [
+  ["an arm among obstacles", [CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3", "--obstacle", "box=box:0.1,0.2,0.3@0.7,0.6,0.3"]],
+  ["a planar closed chain", ["five-bar"]],
+  ["a platform", ["stewart"]],
+];
+
+for (const [words, args] of MODELS) {
+  test(`axe-core finds no violation: ${words}`, () =>
+    served(args, async ({ url }) => {
+      for (const [width, height] of /** @type {const} */ ([[1366, 768], [390, 844]])) {
+        for (const dark of [false, true]) {
+          await look(url, async (page) => {
+            assert.deepEqual(await violations(page), [], "as it opens");
+            for (const name of PANELS) await openPanel(page, name);
+            for (const name of ["velocity-ellipsoid", "principal-screws", "lost-direction"]) await showOverlay(page, name);
+            await page.getByLabel("Orientation", { exact: true }).selectOption("roll, pitch, yaw");
+            await page.locator('[data-panel="mobility"] dl').first().waitFor();
+            await page.getByRole("button", { name: "Record" }).click();
+            // A refused message shows a notice.
+            await page.evaluate(() => /** @type {any} */ (window).viewer.session.send({ type: "joint", name: "nothing", value: 0 }));
+            await page.locator(".toast.bad").waitFor();
+            assert.deepEqual(await violations(page), [], "all panels open");
+            await page.getByRole("button", { name: /^Stop recording/ }).click();
+            assert.deepEqual(await violations(page), [], "with a recording");
+          }, { width, height, dark });
+        }
+      }
+    }));
+}
+
+test("axe-core finds no violation beside a stopped server", () =>
+  visit(["panda"], async (page, server) => {
+    await server.stop();
+    await page.getByText("The server has stopped.").waitFor();
+    assert.deepEqual(await violations(page), []);
+  }, { expect: /WebSocket|net::ERR_/ }));
+
+for (const [width, height] of /** @type {const} */ ([[1366, 768], [844, 390], [390, 844]])) {
+  test(`Tab reaches every control once, in sight and with a mark of the focus, ${width} x ${height}`, () =>
+    visit([CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3"], async (page) => {
+      for (const name of PANELS) await openPanel(page, name);
+      await showOverlay(page, "velocity-ellipsoid");
+      await page.locator('[data-panel="compare"] table').waitFor();
+      await page.evaluate(() => scrollTo(0, 0));
+      const wanted = await page.evaluate(() => {
+        const all = [...document.querySelectorAll("button, input, select, summary, canvas, [tabindex]")].filter((element) => {
+          const { disabled } = /** @type {HTMLInputElement} */ (element);
+          return !disabled && element.checkVisibility() && !element.closest(".pad");
+        });
+        const seen = { all: new Set(all), hidden: [], unmarked: [] };
+        Object.assign(window, { seen });
+        return all.length;
+      });
+      for (let i = 0; i < wanted + 2; i += 1) {
+        await page.keyboard.press("Tab");
+        await page.evaluate(() => {
+          const element = document.activeElement;
+          const { all, hidden, unmarked } = /** @type {any} */ (window).seen;
+          if (!element || element === document.body || !all.delete(element)) return;
+          const box = element.getBoundingClientRect();
+          const isSeen = [0.5, 0.1].some((share) => {
+            const top = document.elementFromPoint(box.x + box.width / 2, box.y + box.height * share);
+            return top && (element.contains(top) || top.contains(element));
+          });
+          const name = `${element.tagName} ${element.getAttribute("aria-label") ?? element.textContent}`;
+          if (!isSeen) hidden.push(name);
+          const { outlineStyle, outlineWidth } = getComputedStyle(element);
+          if (outlineStyle === "none" || parseFloat(outlineWidth) < 2) unmarked.push(name);
+        });
+      }
+      const { missed, hidden, unmarked } = await page.evaluate(() => {
+        const { all, ...rest } = /** @type {any} */ (window).seen;
+        return { missed: [...all].map((/** @type {Element} */ element) => element.outerHTML.slice(0, 100)), ...rest };
+      });
+      assert.deepEqual({ missed, hidden, unmarked }, { missed: [], hidden: [], unmarked: [] });
+    }, { width, height }));
+}
+
+test("the view is turned, moved and zoomed by keys; the handle, panels and obstacles have theirs", () =>
+  visit([CELL], async (page) => {
+    await page.locator("canvas").focus();
+    const camera = () => page.evaluate(() => {
+      const { camera: { position }, orbit: { target } } = /** @type {any} */ (window).viewer.stage;
+      return { target: target.toArray(), distance: position.distanceTo(target), way: position.clone().sub(target).normalize().toArray() };
+    });
+    const first = await camera();
+    await page.keyboard.press("+");
+    const near = await camera();
+    assert.ok(Math.abs(near.distance - first.distance / 1.15) < 1e-9 * first.distance && apart(near.way, first.way) < 1e-9);
+    await page.keyboard.press("-");
+    assert.ok(Math.abs((await camera()).distance - first.distance) < 1e-9 * first.distance);
+    await page.keyboard.press("Shift+ArrowRight");
+    assert.ok(apart((await camera()).way, first.way) > 0.01);
+    await page.keyboard.press("ArrowRight");
+    assert.ok(apart((await camera()).target, first.target) > 1e-4);
+    await page.keyboard.press("e");
+    await page.getByRole("button", { name: "Rotate", exact: true, pressed: true }).waitFor();
+    await page.keyboard.press("w");
+    await page.keyboard.press("x");
+    await page.getByRole("button", { name: "tool axes", pressed: true }).waitFor();
+    const summary = page.locator('[data-panel="obstacles"] > summary');
+    await summary.focus();
+    await page.keyboard.press("Enter");
+    const panel = page.locator('[data-panel="obstacles"][open]');
+    await panel.getByRole("button", { name: "Add" }).focus();
+    await page.keyboard.press("Enter");
+    await until(page, "scene.obstacles.length === 1 && state.obstacles.length === 1");
+    await panel.getByRole("button", { name: "sphere 1", exact: true, pressed: true }).waitFor();
+    await page.keyboard.press("Escape");
+    await panel.getByRole("button", { name: "sphere 1", exact: true, pressed: false }).waitFor();
+  }));
