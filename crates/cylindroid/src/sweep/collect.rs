@@ -15,6 +15,22 @@ use crate::error::{Error, Result};
 const MOST: u64 = 1 << 31;
 
 impl Sweep {
+    /// Returns an error for more numbers than [`Sweep::collect`] takes into memory.
+    ///
+    /// # Errors
+    /// More than 2^31 numbers.
+    pub fn check_memory(&self) -> Result<()> {
+        let numbers = self.rows().saturating_mul(self.columns.len() as u64);
+        if numbers <= MOST {
+            return Ok(());
+        }
+        Err(Error::InvalidOption {
+            option: "out",
+            value: String::new(),
+            reason: format!("{numbers} numbers are too many for memory; name a folder"),
+        })
+    }
+
     /// All rows, computed by several threads. `threads` and `observe` as in [`Sweep::write`]; `None`
     /// if `observe` stopped the run.
     ///
@@ -25,14 +41,7 @@ impl Sweep {
         threads: Option<NonZeroUsize>,
         mut observe: impl FnMut(&Progress) -> bool,
     ) -> Result<Option<Table>> {
-        let numbers = self.rows().saturating_mul(self.columns.len() as u64);
-        if numbers > MOST {
-            return Err(Error::InvalidOption {
-                option: "out",
-                value: String::new(),
-                reason: format!("{numbers} numbers are too many for memory; name a folder"),
-            });
-        }
+        self.check_memory()?;
         let mut parts: Vec<Option<Table>> = vec![None; self.parts()];
         let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
         let work = |part: usize| self.table(self.rows_of(part));

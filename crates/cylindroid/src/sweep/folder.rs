@@ -9,17 +9,15 @@
 //! Checked  tests/sweep/folder.rs
 
 use std::cell::{Cell, RefCell};
-use std::fs::{self, File, OpenOptions, TryLockError};
 use std::num::NonZeroUsize;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::job::Sweep;
-use super::manifest::{self, Part, cannot_write, part_name};
-use super::parquet_file;
+use super::manifest::Part;
 use super::parts::run_parts;
-use crate::error::{Error, Result};
+use super::shared_folder::SharedFolder;
+use crate::error::Result;
 
 /// Between two manifests at least.
 const BETWEEN_MANIFESTS: Duration = Duration::from_secs(1);
@@ -60,12 +58,6 @@ pub struct Summary {
 }
 
 impl Sweep {
-    /// Number of parts.
-    #[must_use]
-    pub fn parts(&self) -> usize {
-        usize::try_from(self.rows().div_ceil(self.part_rows)).unwrap_or(usize::MAX)
-    }
-
     /// Writes `part-*.parquet` and `manifest.json` into a folder, which is created. `observe` is
     /// called ten times a second on the thread of the caller, until it returns false, which stops
     /// the run after the parts that are being computed.
@@ -80,18 +72,13 @@ impl Sweep {
         options: &WriteOptions,
         mut observe: impl FnMut(&Progress) -> bool,
     ) -> Result<Summary> {
-        fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))?;
-        let _lock = lock(folder)?;
-        let listed = self.listed(folder, options.resume)?;
-        remove_temporary(folder);
+        let shared = SharedFolder::open(self, folder, options.resume)?;
         // Listed until they are verified, so that a stop meanwhile loses nothing.
-        let parts = listed.clone();
-        self.write_manifest(folder, &parts)?;
-        let parts = RefCell::new(parts);
+        let parts = RefCell::new(shared.listed.clone());
         let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
         let finished = Cell::new(0);
         let mut last = Instant::now();
-        let work = |part: usize| self.verified_or_written(folder, part, listed[part].as_ref());
+        let work = |part: usize| self.write_part(folder, part, shared.listed[part].as_ref());
         let take = |part: usize, (own, computed): (Part, bool)| {
             let rows = self.rows_of(part);
             let (rows, before) = (rows.end - rows.start, state.get());
@@ -103,13 +90,13 @@ impl Sweep {
         let tick = || {
             if last.elapsed() > BETWEEN_MANIFESTS {
                 last = Instant::now();
-                self.write_manifest(folder, &parts.borrow())?;
+                shared.write_manifest(self, &parts.borrow())?;
             }
             Ok(observe(&state.get()))
         };
         let ended = run_parts(self.parts(), options.threads, work, take, tick);
         let parts = parts.into_inner();
-        let written = self.write_manifest(folder, &parts);
+        let written = shared.write_manifest(self, &parts);
         ended.and(written)?;
         Ok(Summary {
             rows: self.rows(),
@@ -118,106 +105,5 @@ impl Sweep {
             bytes: parts.iter().flatten().map(|part| part.bytes).sum(),
             complete: finished.get() == parts.len(),
         })
-    }
-
-    /// The parts that a folder has according to its manifest.
-    fn listed(&self, folder: &Path, resume: bool) -> Result<Vec<Option<Part>>> {
-        let refuse = |reason: String| {
-            Err(Error::InvalidOption { option: "out", value: crate::error::shown(folder), reason })
-        };
-        let Some(manifest) = manifest::read(folder)? else {
-            let has_parts = folder.join(part_name(0)).exists();
-            if has_parts && !resume {
-                return refuse(
-                    "it has parts of a sweep, but no manifest; name another folder".to_owned(),
-                );
-            }
-            return Ok(vec![None; self.parts()]);
-        };
-        if !resume {
-            let reason = "it has a sweep already; resume it, or name another folder";
-            return refuse(reason.to_owned());
-        }
-        match self.recipe.difference(&manifest["recipe"]) {
-            None => Ok(manifest::parts(&manifest, self.parts())),
-            Some(difference) => refuse(format!(
-                "it has a sweep of another recipe: {difference}; name another folder"
-            )),
-        }
-    }
-
-    fn write_manifest(&self, folder: &Path, parts: &[Option<Part>]) -> Result<()> {
-        let what = (&self.recipe, self.columns.as_slice());
-        manifest::write(folder, what, (self.rows(), self.part_rows), parts)
-    }
-
-    /// The rows of a part.
-    pub(super) fn rows_of(&self, part: usize) -> Range<u64> {
-        let first = part as u64 * self.part_rows;
-        first..self.rows().min(first + self.part_rows)
-    }
-
-    /// A part that the manifest lists, if its file is the one that was written; otherwise a new one.
-    /// True if it was computed.
-    fn verified_or_written(
-        &self,
-        folder: &Path,
-        part: usize,
-        listed: Option<&Part>,
-    ) -> Result<(Part, bool)> {
-        let path = folder.join(part_name(part));
-        let is_same = |own: &&Part| parquet_file::checksum(&path).is_ok_and(|found| found == **own);
-        match listed.filter(is_same) {
-            Some(own) => Ok((own.clone(), false)),
-            None => Ok((self.write_part(&path, part)?, true)),
-        }
-    }
-
-    fn write_part(&self, path: &Path, part: usize) -> Result<Part> {
-        let table = self.table(self.rows_of(part))?;
-        let temporary = path.with_file_name(temporary_name(part));
-        let written =
-            parquet_file::write(&temporary, &table.columns, &table.values).and_then(|own| {
-                fs::rename(&temporary, path).map_err(|error| cannot_write(path, &error))?;
-                Ok(own)
-            });
-        if written.is_err() {
-            // Room for others on a full disk; the error is reported either way.
-            let _ = fs::remove_file(&temporary);
-        }
-        written
-    }
-}
-
-fn temporary_name(part: usize) -> String {
-    format!(".{}.tmp", part_name(part))
-}
-
-/// Removes parts that an ended process left unfinished.
-fn remove_temporary(folder: &Path) {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let is_ours = |path: &PathBuf| {
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        name.starts_with(".part-") && name.ends_with(".parquet.tmp")
-    };
-    for path in entries.map(|entry| entry.path()).filter(is_ours) {
-        let _ = fs::remove_file(path);
-    }
-}
-
-/// One process at a time; the operating system opens the lock of a process that ends.
-fn lock(folder: &Path) -> Result<File> {
-    let path = folder.join(".lock");
-    let file = OpenOptions::new().create(true).append(true).open(&path);
-    let file = file.map_err(|error| cannot_write(&path, &error))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(Error::InvalidOption {
-            option: "out",
-            value: crate::error::shown(folder),
-            reason: "another process is writing a sweep into it".to_owned(),
-        }),
-        // File systems without locks.
-        Err(TryLockError::Error(_)) => Ok(file),
     }
 }

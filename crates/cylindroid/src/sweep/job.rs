@@ -7,6 +7,7 @@ use std::ops::Range;
 use super::designs::{DesignSpace, Designs};
 use super::evaluate::Evaluator;
 use super::options::{PART_ROWS, SweepOptions};
+use super::own_columns::{self, OwnColumn};
 use super::quantity::Quantity;
 use super::recipe::Recipe;
 use super::source::Configurations;
@@ -28,6 +29,7 @@ pub struct Sweep {
     pub(super) configurations: Configurations,
     pub(super) evaluator: Evaluator,
     pub(super) columns: Vec<Column>,
+    own: Vec<OwnColumn>,
     pub(super) recipe: Recipe,
     pub(super) part_rows: u64,
     pub(super) designs: Option<Designs>,
@@ -45,7 +47,8 @@ impl Sweep {
     /// # Errors
     /// Samples of a slider without limits or of a closed chain, an unknown or repeated coordinate,
     /// quantities that a closed chain does not have or that are named twice, unknown components, a
-    /// length that is not positive, a metric of limits that a joint does not have.
+    /// length that is not positive, a metric of limits that a joint does not have, own columns without
+    /// a name or with that of another column.
     pub fn new(mechanism: &Mechanism, options: SweepOptions) -> Result<Self> {
         let refuse = |option: &'static str, value: String, reason: &str| {
             Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
@@ -68,9 +71,10 @@ impl Sweep {
             columns.extend(quantity.columns(mechanism, evaluator.values()));
         }
         check_names(&columns)?;
+        columns.extend(own_columns::columns(&options.columns, &columns)?);
         let recipe = Recipe::of(mechanism, &options, configurations.rows, &evaluator);
-        let part_rows = options.part_rows;
-        Ok(Self { configurations, evaluator, columns, recipe, part_rows, designs: None })
+        let (part_rows, own) = (options.part_rows, options.columns);
+        Ok(Self { configurations, evaluator, columns, own, recipe, part_rows, designs: None })
     }
 
     /// The sweep of each design: values of parameters of a mechanism file. Its columns are `index`,
@@ -78,12 +82,20 @@ impl Sweep {
     ///
     /// # Errors
     /// Those of [`Sweep::new`] for the nominal design; unknown or repeated parameters, ranges beyond
-    /// those of the file, a parameter with the name of a coordinate.
+    /// those of the file, a parameter with the name of a coordinate, own columns.
     pub fn of_designs(
         model: &ParametricModel,
         space: DesignSpace,
         options: SweepOptions,
     ) -> Result<Self> {
+        if let Some(column) = options.columns.first() {
+            return Err(Error::InvalidOption {
+                option: "columns",
+                value: column.name.clone(),
+                reason: "own columns see configurations, not designs; sweep one design at a time"
+                    .to_owned(),
+            });
+        }
         let mut sweep = Self::new(model.nominal(), options.clone())?;
         let (length, part_rows) = (options.length, options.part_rows);
         let each = sweep.rows();
@@ -134,7 +146,7 @@ impl Sweep {
         self.evaluator.task.iter().map(|&i| Task::COMPONENTS[i]).collect()
     }
 
-    /// The columns: `index`, the coordinates, then the quantities.
+    /// The columns: `index`, the coordinates, the quantities, then own columns.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.columns
@@ -149,7 +161,8 @@ impl Sweep {
     /// These rows, computed on the thread of the caller.
     ///
     /// # Errors
-    /// Rows that the sweep does not have; configurations so far out that a result overflows.
+    /// Rows that the sweep does not have; configurations so far out that a result overflows; errors of
+    /// own columns.
     pub fn table(&self, rows: Range<u64>) -> Result<Table> {
         if rows.start > rows.end || rows.end > self.rows() {
             return Err(Error::InvalidOption {
@@ -159,7 +172,12 @@ impl Sweep {
             });
         }
         let values = match &self.designs {
-            None => self.evaluator.run(&self.configurations, &self.columns, rows)?,
+            None => {
+                let others = &self.columns[..self.columns.len() - self.own.len()];
+                let mut values = self.evaluator.run(&self.configurations, others, rows.clone())?;
+                values.extend(own_columns::run(&self.own, &self.configurations, rows)?);
+                values
+            }
             Some(designs) => designs.run(&self.columns, rows)?,
         };
         Ok(Table { columns: self.columns.clone(), values })

@@ -20,10 +20,11 @@ pub(super) const MANIFEST: &str = "manifest.json";
 
 /// A finished part.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Part {
-    pub(super) bytes: u64,
-    /// SHA-256 of the file.
-    pub(super) sha256: String,
+pub struct Part {
+    /// Size of the file (bytes).
+    pub bytes: u64,
+    /// SHA-256 of the file, hexadecimal.
+    pub sha256: String,
 }
 
 /// The name of a part.
@@ -38,12 +39,16 @@ pub(super) fn read(folder: &Path) -> Result<Option<Value>> {
         return Ok(None);
     }
     let text = crate::model::read_regular_file(&path, 1 << 30)?;
-    let value = serde_json::from_slice(&text).map_err(|error| Error::Io {
-        path,
+    of_bytes(&path, &text).map(Some)
+}
+
+/// A manifest that was read from here.
+pub(super) fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Value> {
+    serde_json::from_slice(bytes).map_err(|error| Error::Io {
+        path: path.to_owned(),
         action: "read",
         message: format!("it is no manifest of a sweep: {error}"),
-    })?;
-    Ok(Some(value))
+    })
 }
 
 /// The finished parts that a manifest lists, by their number.
@@ -63,13 +68,12 @@ pub(super) fn parts(manifest: &Value, count: usize) -> Vec<Option<Part>> {
     parts
 }
 
-/// Writes the manifest.
-pub(super) fn write(
-    folder: &Path,
+/// The text of the manifest.
+pub(super) fn text(
     (recipe, columns): (&Recipe, &[Column]),
     (rows, part_rows): (u64, u64),
     parts: &[Option<Part>],
-) -> Result<()> {
+) -> String {
     let column = |c: &Column| json!({"name": c.name, "unit": c.unit, "description": c.description});
     let entry = |(i, part): (usize, &Option<Part>)| {
         let part = part.as_ref()?;
@@ -89,9 +93,13 @@ pub(super) fn write(
         "complete": parts.iter().all(Option::is_some),
         "parts": parts.iter().enumerate().filter_map(entry).collect::<Vec<_>>(),
     });
+    format!("{manifest:#}\n")
+}
+
+/// Writes the manifest.
+pub(super) fn write(folder: &Path, text: &str) -> Result<()> {
     let path = folder.join(MANIFEST);
     let temporary = folder.join(".manifest.json.tmp");
-    let text = format!("{manifest:#}\n");
     let written = File::create(&temporary).and_then(|mut file| {
         file.write_all(text.as_bytes())?;
         file.sync_all()?;

@@ -4,7 +4,7 @@
 //! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
 //! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder`
-//! (on disk, stopped and resumed). `map` goes its own way: the workspace in the coordinates of the
+//! (on disk, stopped and resumed), `shared_folder` (written by several processes). `map` goes its own way: the workspace in the coordinates of the
 //! platform.
 //!
 //! ```
@@ -31,11 +31,13 @@ mod job;
 mod manifest;
 mod map;
 mod options;
+mod own_columns;
 mod parquet_file;
 mod parquet_input;
 mod parts;
 mod quantity;
 mod recipe;
+mod shared_folder;
 mod singular_values;
 mod sobol;
 mod source;
@@ -45,10 +47,13 @@ mod table;
 pub use designs::{AxisKinds, DesignSpace, ParameterRange};
 pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
+pub use manifest::Part;
 pub use map::{Locus, LocusKind, Map, MapOptions, WorkingMode};
 pub use options::{SweepOptions, VelocityMetric};
+pub use own_columns::{ColumnFunction, OwnColumn};
 pub use parquet_input::parquet_configurations;
 pub use quantity::Quantity;
+pub use shared_folder::SharedFolder;
 pub use source::{Axis, Source};
 pub use statistics::Statistics;
 pub use table::{Column, Table, Values};

@@ -1,5 +1,6 @@
 //! The options of a sweep.
 
+use super::own_columns::OwnColumn;
 use super::quantity::Quantity;
 use super::source::Source;
 use crate::error::{Error, Result};
@@ -16,6 +17,8 @@ pub struct SweepOptions {
     pub source: Source,
     /// The quantities, in the order of their columns.
     pub quantities: Vec<Quantity>,
+    /// Columns of the caller, after those of the quantities.
+    pub columns: Vec<OwnColumn>,
     /// The frame: the reference of a closed chain, otherwise the tool, by default.
     pub end_effector: Option<EndEffector>,
     /// The components of the twist that the Jacobian's measures see, in world axes; in the plane
@@ -34,6 +37,7 @@ impl Default for SweepOptions {
         Self {
             source: Source::Samples { count: 0, seed: 0 },
             quantities: vec![Quantity::Pose, Quantity::Yoshikawa],
+            columns: Vec::new(),
             end_effector: None,
             task: None,
             metric: VelocityMetric::Unit,

@@ -23,14 +23,25 @@ use sha2::{Digest, Sha256};
 
 use super::manifest::{Part, cannot_write};
 use super::recipe::hexadecimal;
-use super::table::{Column, ColumnKind, Values};
+use super::table::{Column, ColumnKind, Table, Values};
 use crate::error::{Error, Result};
 
 /// Writes the columns, and makes the file durable.
-pub(super) fn write(path: &Path, columns: &[Column], values: &[Values]) -> Result<Part> {
+pub(super) fn write(path: &Path, table: &Table) -> Result<Part> {
     let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
-    let mut sink = Hashed { file, hasher: Sha256::new(), bytes: 0, failed: None };
-    let written = into(&mut sink, columns, values);
+    let (part, file) = into_sink(path, file, table)?;
+    file.sync_all().map_err(|error| cannot_write(path, &error))?;
+    Ok(part)
+}
+
+/// The bytes of the same file.
+pub(super) fn bytes(name: &str, table: &Table) -> Result<(Part, Vec<u8>)> {
+    into_sink(Path::new(name), Vec::new(), table)
+}
+
+fn into_sink<W: Write + Send>(path: &Path, inner: W, table: &Table) -> Result<(Part, W)> {
+    let mut sink = Hashed { inner, hasher: Sha256::new(), bytes: 0, failed: None };
+    let written = into(&mut sink, &table.columns, &table.values);
     if let Some(error) = sink.failed {
         return Err(cannot_write(path, &error));
     }
@@ -39,8 +50,8 @@ pub(super) fn write(path: &Path, columns: &[Column], values: &[Values]) -> Resul
         action: "write",
         message: error.to_string(),
     })?;
-    sink.file.sync_all().map_err(|error| cannot_write(path, &error))?;
-    Ok(Part { bytes: sink.bytes, sha256: hexadecimal(&sink.hasher.finalize()) })
+    let part = Part { bytes: sink.bytes, sha256: hexadecimal(&sink.hasher.finalize()) };
+    Ok((part, sink.inner))
 }
 
 /// The checksum of a file.
@@ -58,18 +69,18 @@ pub(super) fn checksum(path: &Path) -> io::Result<Part> {
     Ok(Part { bytes, sha256: hexadecimal(&hasher.finalize()) })
 }
 
-/// A file and its checksum.
-struct Hashed {
-    file: File,
+/// A file, or bytes in memory, and its checksum.
+struct Hashed<W> {
+    inner: W,
     hasher: Sha256,
     bytes: u64,
     /// The first error, of which Parquet's keeps the text only.
     failed: Option<io::Error>,
 }
 
-impl Write for Hashed {
+impl<W: Write> Write for Hashed<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match self.file.write_all(bytes) {
+        match self.inner.write_all(bytes) {
             Ok(()) => {
                 self.hasher.update(bytes);
                 self.bytes += bytes.len() as u64;
@@ -105,8 +116,8 @@ fn schema(columns: &[Column]) -> std::result::Result<TypePtr, ParquetError> {
     Type::group_type_builder("sweep").with_fields(fields).build().map(Arc::new)
 }
 
-fn into(
-    sink: &mut Hashed,
+fn into<W: Write + Send>(
+    sink: &mut Hashed<W>,
     columns: &[Column],
     values: &[Values],
 ) -> std::result::Result<(), ParquetError> {

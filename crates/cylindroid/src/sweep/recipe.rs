@@ -13,6 +13,7 @@ use sha2::{Digest, Sha256};
 use super::designs::{DesignSpace, Designs, ParameterRange};
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
+use super::own_columns::OwnColumn;
 use super::source::{Axis, Source};
 use crate::model::Mechanism;
 
@@ -36,7 +37,7 @@ impl Recipe {
         let names = mechanism.coordinates().iter().map(|c| c.name.as_str());
         let frame = &mechanism.frame_of(evaluator.end_effector.frame).name;
         let quantities = options.quantities.iter().map(|q| q.name());
-        Self(json!({
+        let mut recipe = Self(json!({
             "version": env!("CARGO_PKG_VERSION"),
             "model": mechanism.name(),
             "model_checksum": checksum_of(mechanism),
@@ -50,7 +51,12 @@ impl Recipe {
             "task": evaluator.task,
             "metric": options.metric.name(),
             "length": evaluator.length,
-        }))
+        }));
+        if !options.columns.is_empty() {
+            let own = |c: &OwnColumn| json!({"name": c.name, "unit": c.unit, "version": c.version});
+            recipe.0["own_columns"] = options.columns.iter().map(own).collect();
+        }
+        recipe
     }
 
     /// The recipe with designs; a length that was not chosen is that of each design.

@@ -73,7 +73,7 @@ impl Axis {
 #[derive(Debug, Clone)]
 pub(super) struct Configurations {
     pub(super) rows: u64,
-    n: usize,
+    pub(super) n: usize,
     kind: Kind,
 }
 

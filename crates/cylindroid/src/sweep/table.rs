@@ -37,6 +37,12 @@ impl Column {
         Self { name: name.to_owned(), unit: "".into(), description, kind: ColumnKind::Text }
     }
 
+    /// A column of the caller.
+    pub(super) fn own(name: &str, unit: &str) -> Self {
+        let unit = unit.to_owned().into();
+        Self { name: name.to_owned(), unit, description: "own column", kind: ColumnKind::Number }
+    }
+
     /// A parameter of the file, whose unit the file names.
     pub(super) fn parameter(name: &str, unit: &str) -> Self {
         let unit = unit.to_owned().into();

@@ -40,7 +40,7 @@ fn arm() -> ParametricModel {
     ParametricModel::of_text(ARM, Path::new("arm.toml"), &[]).unwrap()
 }
 
-fn five_bar() -> ParametricModel {
+pub(crate) fn five_bar() -> ParametricModel {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/designs.toml");
     ParametricModel::read(path.to_str().unwrap(), &[]).unwrap()
 }

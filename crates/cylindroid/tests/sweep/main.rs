@@ -9,10 +9,12 @@
 
 mod designs;
 mod folder;
+mod own_columns;
 mod parts;
 mod pinocchio;
 mod quantities;
 mod sampling;
+mod shared_folder;
 
 use cylindroid::Mechanism;
 use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions, Table, Values};

@@ -44,6 +44,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     let options = SweepOptions {
         source: source.clone(),
         quantities,
+        columns: Vec::new(),
         end_effector: frame,
         task,
         metric: args.metric.metric(),
