@@ -20,6 +20,8 @@ TOOLS = {"0BSD", "BSL-1.0", "CC0-1.0", "MIT-CMU", "MPL-2.0", "PSF-2.0", "Qhull"}
 PUBLISHED = {"0BSD", "CC0-1.0", "MIT-CMU", "PSF-2.0"}
 #: Words of classifiers and of older metadata.
 WORDS = {
+    "3-Clause BSD License": "BSD-3-Clause",
+    "Apache 2.0": "Apache-2.0",
     "Apache Software License": "Apache-2.0",
     "BSD 3-Clause License": "BSD-3-Clause",
     "BSD License": "BSD-3-Clause",

@@ -97,7 +97,7 @@ mod _core {
         rotation_exp_derivative, rotation_log_derivative, velocity_conversion,
     };
     #[pymodule_export]
-    use crate::sweep::{PySweepSummary, sweep};
+    use crate::sweep::{PySweepFolder, PySweepPlan, PySweepSummary};
     #[pymodule_export]
     use crate::tasks::{
         PyCenterOfMassTask, PyCollisionAvoidance, PyCustomTask, PyFrameTask, PyGazeTask,

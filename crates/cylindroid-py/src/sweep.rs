@@ -1,17 +1,20 @@
-//! Sweeps: quantities of many configurations and designs, as arrays or in a folder.
+//! Sweeps: quantities of many configurations and designs, computed here or part by part.
+
+mod own_columns;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use cylindroid::control::Task;
 use cylindroid::sweep::{
-    Axis, AxisKinds, DesignSpace, ParameterRange, Progress, Quantity, Source, Summary, Sweep,
-    SweepOptions, Values, VelocityMetric, WriteOptions, parquet_configurations,
+    Axis, AxisKinds, DesignSpace, ParameterRange, Part, Quantity, SharedFolder, Source, Summary,
+    Sweep, SweepOptions, Table, Values, VelocityMetric, WriteOptions, parquet_configurations,
 };
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 
+use self::own_columns::{Given, OwnColumns};
 use crate::arrays::{Numbers, Rows};
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
@@ -20,9 +23,9 @@ use crate::mechanism::PyMechanism;
 ///
 /// Attributes
 /// ----------
-/// folder : Path
+/// folder : Path or str
 ///     `part-*.parquet` and `manifest.json`, with the recipe, the columns with their units and the
-///     SHA-256 of each part.
+///     SHA-256 of each part; a URI as it was given.
 /// rows : int
 ///     Rows of the sweep.
 /// computed : int
@@ -34,7 +37,7 @@ use crate::mechanism::PyMechanism;
 #[pyclass(frozen, get_all, module = "cylindroid", name = "SweepSummary")]
 #[derive(Debug)]
 pub(crate) struct PySweepSummary {
-    folder: PathBuf,
+    folder: Py<PyAny>,
     rows: u64,
     computed: u64,
     parts: usize,
@@ -43,205 +46,315 @@ pub(crate) struct PySweepSummary {
 
 #[pymethods]
 impl PySweepSummary {
-    fn __repr__(&self) -> String {
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let folder = self.folder.bind(py).str()?;
         let Self { rows, parts, .. } = self;
-        format!(
-            "SweepSummary({rows} rows in {parts} parts, {:?})",
-            self.folder.display().to_string()
-        )
+        Ok(format!("SweepSummary({rows} rows in {parts} parts, {:?})", folder.to_string_lossy()))
     }
 }
 
-/// Quantities of many configurations: samples within the limits, a grid, or configurations.
-///
-/// Sample i is a function of `seed` and i alone, and results do not depend on the number of threads.
-/// At most one of `samples`, coordinates in `over`, and `configurations` is given. With parameters of
-/// the mechanism file in `over`, or with `vary`, all of it is computed for each design.
-///
-/// Parameters
-/// ----------
-/// mechanism : Mechanism
-///     Samples and grids need one without loops.
-/// samples : int, optional
-///     Number of points of a scrambled Sobol' sequence within the position limits; joints without
-///     limits rotate through [-pi, pi).
-/// seed : int
-///     Selects one of the sequences.
-/// over : dict of str to (float, float, int), optional
-///     A grid: of a coordinate its first and last value [rad or m] and the number of values; the
-///     last one changes fastest. Parameters of the mechanism file are axes of a grid of designs; of
-///     designs alone, the configuration is home, or `q`.
-/// q : array_like, (n,), optional
-///     The other coordinates of a grid [rad or m]. Default: home.
-/// configurations : array_like, (N, n), mapping, DataFrame or path of a Parquet file, optional
-///     Configurations [rad or m]; where columns have names, those of the coordinates are taken, in
-///     any order.
-/// quantities : sequence of str
-///     Of 'pose', 'jacobian', 'singular_values', 'smallest_singular_value', 'condition',
-///     'yoshikawa', 'limit_distance', 'gibson_hunt', 'measures'; of closed chains 'pose',
-///     'limit_distance' and 'measures'.
-/// frame : str, optional
-///     One of `frames`. Default: the tool, of a closed chain its reference.
-/// tool : array_like, (4, 4), optional
-///     `frame_from_tool`, a tool point fixed to the frame.
-/// task : str, optional
-///     The components that the measures of the Jacobian see, world axes: 'pose', 'position',
-///     'orientation', or some of 'x,y,z,rx,ry,rz'. Default: 'pose'.
-/// metric : str
-///     Of 'yoshikawa' and 'measures': 'unit', 'length' or 'limits', as for `manipulability`.
-/// length : float, optional
-///     Characteristic length (m). Default: that of the mechanism, `reach`.
-/// out : path, optional
-///     Folder for Parquet files, which is created.
-/// resume : bool
-///     Continue a folder that was interrupted; its finished parts are verified.
-/// threads : int, optional
-///     Default: as many as the machine has.
-/// vary : dict of str to (float, float), optional
-///     Ranges of parameters for sampled designs, a Sobol' sequence too.
-/// designs : int
-///     Their number.
-///
-/// Returns
-/// -------
-/// dict of str to ndarray, (N,), or SweepSummary
-///     The columns: 'index', the coordinates by name, then those of the quantities. Of designs,
-///     'design', 'design_valid' and the parameters precede the coordinates; a design whose file
-///     cannot be loaded with its values has 'design_valid' 0 and NaN. With `out` the summary of the
-///     folder.
-///
-/// Raises
-/// ------
-/// InvalidOptionError
-///     Also for a folder of another recipe, with the difference, and for samples of sliders without
-///     limits.
-/// UnknownNameError, DimensionError, NotFiniteError, UnreadableFileError
-///
-/// Notes
-/// -----
-/// An interrupt (Ctrl-C) leaves a folder that `resume` continues to the same bytes.
-///
-/// Examples
-/// --------
-/// >>> import cylindroid as cy
-/// >>> panda = cy.load("panda")
-/// >>> found = cy.sweep(panda, samples=1000, quantities=["pose", "yoshikawa"])
-/// >>> found["yoshikawa"].shape
-/// (1000,)
-/// >>> list(found)[-3:]
-/// ['qy', 'qz', 'yoshikawa']
-#[pyfunction]
-#[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None,
-    configurations = None, quantities = None, frame = None, tool = None, task = None, metric = "unit", length = None,
-    out = None, resume = false, threads = None,
-    vary = None, designs = 0))]
-#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
-pub(crate) fn sweep<'py>(
-    py: Python<'py>,
-    #[pyo3(from_py_with = argument)] mechanism: PyRef<'py, PyMechanism>,
-    #[pyo3(from_py_with = argument)] samples: Option<u64>,
-    #[pyo3(from_py_with = argument)] seed: u64,
-    #[pyo3(from_py_with = argument)] over: Option<Bound<'py, PyDict>>,
-    q: Option<Numbers<'py>>,
-    configurations: Option<Bound<'py, PyAny>>,
-    #[pyo3(from_py_with = argument)] quantities: Option<Vec<String>>,
-    #[pyo3(from_py_with = argument)] frame: Option<&str>,
-    tool: Option<Numbers<'py>>,
-    #[pyo3(from_py_with = argument)] task: Option<&str>,
-    #[pyo3(from_py_with = argument)] metric: &str,
-    #[pyo3(from_py_with = argument)] length: Option<f64>,
-    #[pyo3(from_py_with = argument)] out: Option<PathBuf>,
-    #[pyo3(from_py_with = argument)] resume: bool,
-    #[pyo3(from_py_with = argument)] threads: Option<usize>,
-    #[pyo3(from_py_with = argument)] vary: Option<Bound<'py, PyDict>>,
-    #[pyo3(from_py_with = argument)] designs: u64,
-) -> Result<Bound<'py, PyAny>> {
-    let robot = &*mechanism;
-    let mechanism = robot.inner.clone();
-    let over = over.as_ref().map_or(Ok(Vec::new()), axes)?;
-    let ranges = vary.as_ref().map_or(Ok(Vec::new()), ranges)?;
-    let split = AxisKinds::of(over, &mechanism)?;
-    let space = match (split.parameters.is_empty(), ranges.is_empty()) {
-        (true, true) => None,
-        (false, true) => Some(DesignSpace::Grid(split.parameters)),
-        (true, false) => Some(DesignSpace::Samples { ranges, count: designs, seed }),
-        (false, false) => {
-            let reason = "designs are a grid or samples: give parameters in over or in vary";
-            return Err(Failure::option("vary", "a dict", reason));
-        }
-    };
-    let rest = match &q {
-        None => Vec::new(),
-        Some(q) => q.vector("q")?.to_vec(),
-    };
-    let grid = !split.coordinates.is_empty();
-    let source = match (samples, grid, configurations) {
-        (Some(count), false, None) => Source::Samples { count, seed },
-        (None, true, None) => Source::Grid { axes: split.coordinates, rest },
-        (None, false, Some(configurations)) => {
-            Source::Configurations(rows(robot, &configurations)?)
-        }
-        (None, false, None) if space.is_some() && rest.is_empty() => Source::Home,
-        (None, false, None) if space.is_some() => Source::Configurations(rest),
-        _ => {
-            let reason = "give one of samples, over and configurations";
-            return Err(Failure::option("samples", "", reason));
-        }
-    };
-    let quantities = match quantities {
-        None => Quantity::usual(&mechanism).to_vec(),
-        Some(named) => {
-            named.iter().map(|name| Quantity::named(name)).collect::<cylindroid::Result<_>>()?
-        }
-    };
-    let chosen = frame.is_some() || tool.is_some();
-    let end_effector = if chosen { Some(robot.end_effector(frame, tool.as_ref())?) } else { None };
-    let options = SweepOptions {
-        source,
-        quantities,
-        end_effector,
-        task: task.map(|name| Task::named(name, &mechanism)).transpose()?,
-        metric: VelocityMetric::named(metric)?,
-        length,
-        part_rows: if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS },
-    };
-    let threads = match threads {
-        None => None,
-        Some(count) => match NonZeroUsize::new(count) {
-            Some(count) => Some(count),
-            None => return Err(Failure::option("threads", "0", "one at least")),
-        },
-    };
-    if resume && out.is_none() {
-        return Err(Failure::option("resume", "True", "name the folder with out"));
+/// Size and SHA-256 of a part, as Python has them.
+type Listed = (u64, String);
+
+fn to_part(listed: Listed) -> Part {
+    Part { bytes: listed.0, sha256: listed.1 }
+}
+
+fn of_part(part: Part) -> Listed {
+    (part.bytes, part.sha256)
+}
+
+/// A folder of parts that several processes write, locked until `close`.
+#[pyclass(module = "cylindroid", name = "SweepFolder")]
+#[derive(Debug)]
+pub(crate) struct PySweepFolder {
+    inner: Option<SharedFolder>,
+}
+
+#[pymethods]
+impl PySweepFolder {
+    /// Size and SHA-256 of the parts that the manifest lists.
+    fn listed(&self) -> Vec<Option<Listed>> {
+        let listed = self.inner.iter().flat_map(|folder| folder.listed.iter());
+        listed.map(|part| part.clone().map(of_part)).collect()
     }
-    let sweep = match space {
-        None => Sweep::new(&mechanism, options)?,
-        Some(space) => Sweep::of_designs(&robot.parametric()?, space, options)?,
-    };
-    // Signals, Ctrl-C among them, are looked for a few times a second.
-    let mut raised = None;
-    let observe = |_: &Progress| {
-        let signals = Python::attach(|py| py.check_signals());
-        raised = signals.err();
-        raised.is_none()
-    };
-    if let Some(folder) = out {
-        let options = WriteOptions { threads, resume };
-        let found = py.detach(|| sweep.write(&folder, &options, observe));
+
+    /// Writes the manifest with these finished parts.
+    #[pyo3(signature = (plan, parts))]
+    fn write_manifest(&self, plan: &PySweepPlan, parts: Vec<Option<Listed>>) -> Result<()> {
+        let parts: Vec<Option<Part>> = parts.into_iter().map(|part| part.map(to_part)).collect();
+        match &self.inner {
+            Some(folder) => Ok(folder.write_manifest(&plan.sweep, &parts)?),
+            None => Err(Failure::kind("the folder is closed")),
+        }
+    }
+
+    /// Opens the lock.
+    fn close(&mut self) {
+        self.inner = None;
+    }
+}
+
+/// A checked sweep, of which any part can be computed; made by `sweep`.
+#[pyclass(frozen, module = "cylindroid", name = "SweepPlan")]
+#[derive(Debug)]
+pub(crate) struct PySweepPlan {
+    sweep: Sweep,
+    own: OwnColumns,
+}
+
+#[pymethods]
+impl PySweepPlan {
+    #[new]
+    #[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None,
+        configurations = None, quantities = None, frame = None, tool = None, task = None,
+        metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new()))]
+    #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+    fn new(
+        #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
+        #[pyo3(from_py_with = argument)] samples: Option<u64>,
+        #[pyo3(from_py_with = argument)] seed: u64,
+        #[pyo3(from_py_with = argument)] over: Option<Bound<'_, PyDict>>,
+        q: Option<Numbers<'_>>,
+        configurations: Option<Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = argument)] quantities: Option<Vec<String>>,
+        #[pyo3(from_py_with = argument)] frame: Option<&str>,
+        tool: Option<Numbers<'_>>,
+        #[pyo3(from_py_with = argument)] task: Option<&str>,
+        #[pyo3(from_py_with = argument)] metric: &str,
+        #[pyo3(from_py_with = argument)] length: Option<f64>,
+        #[pyo3(from_py_with = argument)] vary: Option<Bound<'_, PyDict>>,
+        #[pyo3(from_py_with = argument)] designs: u64,
+        #[pyo3(from_py_with = argument)] columns: Vec<Given>,
+    ) -> Result<Self> {
+        let robot = &*mechanism;
+        let mechanism = robot.inner.clone();
+        let over = over.as_ref().map_or(Ok(Vec::new()), axes)?;
+        let ranges = vary.as_ref().map_or(Ok(Vec::new()), ranges)?;
+        let split = AxisKinds::of(over, &mechanism)?;
+        let space = match (split.parameters.is_empty(), ranges.is_empty()) {
+            (true, true) => None,
+            (false, true) => Some(DesignSpace::Grid(split.parameters)),
+            (true, false) => Some(DesignSpace::Samples { ranges, count: designs, seed }),
+            (false, false) => {
+                let reason = "designs are a grid or samples: give parameters in over or in vary";
+                return Err(Failure::option("vary", "a dict", reason));
+            }
+        };
+        let rest = match &q {
+            None => Vec::new(),
+            Some(q) => q.vector("q")?.to_vec(),
+        };
+        let grid = !split.coordinates.is_empty();
+        let source = match (samples, grid, configurations) {
+            (Some(count), false, None) => Source::Samples { count, seed },
+            (None, true, None) => Source::Grid { axes: split.coordinates, rest },
+            (None, false, Some(configurations)) => {
+                Source::Configurations(rows(robot, &configurations)?)
+            }
+            (None, false, None) if space.is_some() && rest.is_empty() => Source::Home,
+            (None, false, None) if space.is_some() => Source::Configurations(rest),
+            _ => {
+                let reason = "give one of samples, over and configurations";
+                return Err(Failure::option("samples", "", reason));
+            }
+        };
+        let quantities = match quantities {
+            None => Quantity::usual(&mechanism).to_vec(),
+            Some(named) => {
+                named.iter().map(|name| Quantity::named(name)).collect::<cylindroid::Result<_>>()?
+            }
+        };
+        let chosen = frame.is_some() || tool.is_some();
+        let end_effector =
+            if chosen { Some(robot.end_effector(frame, tool.as_ref())?) } else { None };
+        let own = OwnColumns::new(columns);
+        let options = SweepOptions {
+            source,
+            quantities,
+            columns: own.columns(&mechanism),
+            end_effector,
+            task: task.map(|name| Task::named(name, &mechanism)).transpose()?,
+            metric: VelocityMetric::named(metric)?,
+            length,
+            part_rows: if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS },
+        };
+        let sweep = match space {
+            None => Sweep::new(&mechanism, options)?,
+            Some(space) => Sweep::of_designs(&robot.parametric()?, space, options)?,
+        };
+        Ok(Self { sweep, own })
+    }
+
+    /// Number of parts.
+    #[getter]
+    fn parts(&self) -> usize {
+        self.sweep.parts()
+    }
+
+    /// The recipe as JSON.
+    #[getter]
+    fn recipe(&self) -> String {
+        self.sweep.recipe()
+    }
+
+    /// The first entry in which another recipe differs.
+    #[pyo3(signature = (recipe))]
+    fn difference(&self, recipe: &str) -> Result<Option<String>> {
+        Ok(self.sweep.recipe_difference(recipe)?)
+    }
+
+    /// All columns, computed by threads of this process.
+    #[pyo3(signature = (threads = None))]
+    fn collect<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] threads: Option<usize>,
+    ) -> Result<Bound<'py, PyDict>> {
+        let threads = count_of(threads)?;
+        let mut raised = None;
+        let found = py.detach(|| self.sweep.collect(threads, |_| go_on(&mut raised)));
         if let Some(error) = raised {
             return Err(error.into());
         }
-        let Summary { rows, computed, parts, bytes, .. } = found?;
-        let summary = PySweepSummary { folder, rows, computed, parts, bytes };
-        return Ok(Bound::new(py, summary)?.into_any());
+        match self.own.checked(py, found)? {
+            Some(table) => columns_of(py, table),
+            None => Ok(PyDict::new(py)),
+        }
     }
-    let found = py.detach(|| sweep.collect(threads, observe));
-    if let Some(error) = raised {
-        return Err(error.into());
+
+    /// Writes all parts, by threads of this process.
+    #[pyo3(signature = (out, resume = false, threads = None))]
+    fn write(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = argument)] out: PathBuf,
+        #[pyo3(from_py_with = argument)] resume: bool,
+        #[pyo3(from_py_with = argument)] threads: Option<usize>,
+    ) -> Result<PySweepSummary> {
+        let options = WriteOptions { threads: count_of(threads)?, resume };
+        let mut raised = None;
+        let found = py.detach(|| self.sweep.write(&out, &options, |_| go_on(&mut raised)));
+        if let Some(error) = raised {
+            return Err(error.into());
+        }
+        let Summary { rows, computed, parts, bytes, .. } = self.own.checked(py, found)?;
+        let folder = out.into_pyobject(py)?.into_any().unbind();
+        Ok(PySweepSummary { folder, rows, computed, parts, bytes })
     }
+
+    /// Returns an error for more numbers than fit into memory.
+    fn check_memory(&self) -> Result<()> {
+        Ok(self.sweep.check_memory()?)
+    }
+
+    /// The columns of a part.
+    #[pyo3(signature = (part))]
+    fn part<'py>(&self, py: Python<'py>, part: usize) -> Result<Bound<'py, PyDict>> {
+        let found = py.detach(|| self.sweep.part(part));
+        columns_of(py, self.own.checked(py, found)?)
+    }
+
+    /// The file of a part: its bytes, their number and their SHA-256.
+    #[pyo3(signature = (part))]
+    fn part_file<'py>(
+        &self,
+        py: Python<'py>,
+        part: usize,
+    ) -> Result<(Bound<'py, PyBytes>, Listed)> {
+        let found = py.detach(|| self.sweep.part_file(part));
+        let (part, bytes) = self.own.checked(py, found)?;
+        Ok((PyBytes::new(py, &bytes), of_part(part)))
+    }
+
+    /// Writes the file of a part, unless it is the one of `listed`; true if it was computed.
+    #[pyo3(signature = (out, part, listed = None))]
+    fn write_part(
+        &self,
+        py: Python<'_>,
+        out: PathBuf,
+        part: usize,
+        listed: Option<Listed>,
+    ) -> Result<(Listed, bool)> {
+        let listed = listed.map(to_part);
+        let found = py.detach(|| self.sweep.write_part(&out, part, listed.as_ref()));
+        let (part, computed) = self.own.checked(py, found)?;
+        Ok((of_part(part), computed))
+    }
+
+    /// Creates or opens a folder for parts.
+    #[pyo3(signature = (out, resume = false))]
+    fn open_folder(
+        &self,
+        #[pyo3(from_py_with = argument)] out: PathBuf,
+        #[pyo3(from_py_with = argument)] resume: bool,
+    ) -> Result<PySweepFolder> {
+        let inner = Some(SharedFolder::open(&self.sweep, &out, resume)?);
+        Ok(PySweepFolder { inner })
+    }
+
+    /// The text of the manifest with these finished parts.
+    #[pyo3(signature = (parts))]
+    fn manifest(&self, parts: Vec<Option<Listed>>) -> Result<String> {
+        let parts: Vec<Option<Part>> = parts.into_iter().map(|part| part.map(to_part)).collect();
+        Ok(self.sweep.manifest(&parts)?)
+    }
+
+    /// The parts that the text of a manifest lists, which was read at a place.
+    #[pyo3(signature = (place, manifest, resume = false))]
+    fn listed_parts(
+        &self,
+        place: &str,
+        manifest: &str,
+        #[pyo3(from_py_with = argument)] resume: bool,
+    ) -> Result<Vec<Option<Listed>>> {
+        let parts = self.sweep.listed_parts(place, manifest, resume)?;
+        Ok(parts.into_iter().map(|part| part.map(of_part)).collect())
+    }
+
+    /// The name of the file of a part.
+    #[pyo3(signature = (part))]
+    #[staticmethod]
+    fn part_name(part: usize) -> String {
+        Sweep::part_name(part)
+    }
+
+    /// The result of a sweep whose parts others wrote: those parts, and how many of them were
+    /// computed.
+    #[pyo3(signature = (folder, parts, computed))]
+    fn summary(
+        &self,
+        folder: Py<PyAny>,
+        parts: Vec<Listed>,
+        computed: Vec<usize>,
+    ) -> PySweepSummary {
+        PySweepSummary {
+            folder,
+            rows: self.sweep.rows(),
+            computed: computed.iter().map(|part| self.sweep.rows_in(*part)).sum(),
+            parts: parts.len(),
+            bytes: parts.iter().map(|part| part.0).sum(),
+        }
+    }
+}
+
+/// Signals, Ctrl-C among them, are looked for a few times a second: false after one.
+fn go_on(raised: &mut Option<PyErr>) -> bool {
+    let signals = Python::attach(|py| py.check_signals());
+    *raised = signals.err();
+    raised.is_none()
+}
+
+fn count_of(threads: Option<usize>) -> Result<Option<NonZeroUsize>> {
+    match threads.map(NonZeroUsize::new) {
+        None => Ok(None),
+        Some(Some(count)) => Ok(Some(count)),
+        Some(None) => Err(Failure::option("threads", "0", "one at least")),
+    }
+}
+
+fn columns_of(py: Python<'_>, table: Table) -> Result<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
-    let Some(table) = found? else { return Ok(columns.into_any()) };
     for (column, values) in table.columns.iter().zip(table.values) {
         match values {
             Values::Numbers(numbers) => columns.set_item(&column.name, numbers.into_pyarray(py)),
@@ -253,7 +366,7 @@ pub(crate) fn sweep<'py>(
             _ => Ok(()),
         }?;
     }
-    Ok(columns.into_any())
+    Ok(columns)
 }
 
 pub(crate) fn axes(over: &Bound<'_, PyDict>) -> Result<Vec<Axis>> {

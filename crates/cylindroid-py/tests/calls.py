@@ -52,6 +52,10 @@ LINES = [[0, 0, 0, 0, 0, 1], [0, -1, 0, 1, 0, 0]]
 FINGERS = [cy.FingerContact([x, 0, 0], [-x, 0, 0], mu=0.5, torsion=0.01) for x in (1.0, -1.0)]
 
 
+def total(q, names):
+    return q.sum(1)
+
+
 def line():
     return cy.CartesianPath.line(POSE, NEAR)
 
@@ -158,7 +162,9 @@ def calls():
           "tool": np.eye(4), "task": "x,y", "metric": "length", "length": 0.5, "threads": 1}),
         ("sweep", cy.sweep,
          {"mechanism": PANDA, "over": {"panda_joint1": (0.0, 1.0, 3)}, "q": PANDA.home}),
-        ("sweep", cy.sweep, {"mechanism": PANDA, "configurations": [PANDA.home]}),
+        ("sweep", cy.sweep,
+         {"mechanism": PANDA, "configurations": [PANDA.home], "columns": {"sum": total}}),
+        ("SweepColumn", cy.SweepColumn, {"function": total, "unit": "rad", "version": "1"}),
         ("CollisionAvoidance", cy.CollisionAvoidance,
          {"model": with_ball(), "gap": 0.02, "margin": 0.2}),
         ("CollisionModel", cy.CollisionModel,

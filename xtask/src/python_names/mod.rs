@@ -20,6 +20,8 @@ use self::stub::Names;
 
 const LIBRARY: &str = "crates/cylindroid/src";
 const STUB: &str = "crates/cylindroid-py/python/cylindroid/_core.pyi";
+/// Functions of the library that are written in Python.
+const SWEEPS: &str = "crates/cylindroid-py/python/cylindroid/_sweeps.py";
 const EXCEPTIONS: &str = "crates/cylindroid-py/names.txt";
 
 /// Compares the library with the stub.
@@ -41,7 +43,7 @@ pub(crate) fn check() -> Result<()> {
 
 fn faults(root: &Path) -> Result<Vec<String>> {
     let functions = library::public_functions(&root.join(LIBRARY))?;
-    let names = Names::parse(&read(root, STUB)?);
+    let names = Names::parse(&[read(root, STUB)?, read(root, SWEEPS)?].concat());
     let exceptions = exceptions::parse(&read(root, EXCEPTIONS)?)?;
     Ok(compare(&functions, &names, &exceptions))
 }

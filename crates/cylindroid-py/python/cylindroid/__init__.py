@@ -137,7 +137,6 @@ from ._core import (
     screw_to,
     secondary_tasks,
     selectively_damped,
-    sweep,
     transversals,
     velocity_conversion,
     workspace_map,
@@ -156,6 +155,7 @@ from ._errors import (
     UnknownNameError,
     UnreadableFileError,
 )
+from ._sweeps import SweepColumn, sweep
 
 __all__ = [
     "ActuatorTransmission",
@@ -244,6 +244,7 @@ __all__ = [
     "Srdf",
     "Stall",
     "Stiffness",
+    "SweepColumn",
     "SweepSummary",
     "TaskReport",
     "TaskServo",

@@ -86,6 +86,8 @@ __all__ = [
     "Srdf",
     "Stall",
     "Stiffness",
+    "SweepFolder",
+    "SweepPlan",
     "SweepSummary",
     "TaskReport",
     "TaskServo",
@@ -134,7 +136,6 @@ __all__ = [
     "screw_to",
     "secondary_tasks",
     "selectively_damped",
-    "sweep",
     "transversals",
     "velocity_conversion",
     "workspace_map",
@@ -1808,9 +1809,69 @@ class Srdf:
     ) -> _Array: ...
 
 @final
+class SweepFolder:
+    def listed(self) -> list[tuple[int, str] | None]: ...
+    def write_manifest(
+        self, plan: SweepPlan, parts: Sequence[tuple[int, str] | None]
+    ) -> None: ...
+    def close(self) -> None: ...
+@final
+class SweepPlan:
+    def __new__(
+        cls,
+        mechanism: Mechanism,
+        samples: int | None = None,
+        seed: int = 0,
+        over: dict[str, tuple[float, float, int]] | None = None,
+        q: ArrayLike | None = None,
+        configurations: Any = None,
+        quantities: Sequence[str] | None = None,
+        frame: str | None = None,
+        tool: ArrayLike | None = None,
+        task: str | None = None,
+        metric: str = "unit",
+        length: float | None = None,
+        vary: dict[str, tuple[float, float]] | None = None,
+        designs: int = 0,
+        columns: Sequence[tuple[str, str, str, Callable[..., ArrayLike]]] = ...,
+    ) -> SweepPlan: ...
+    @property
+    def parts(self) -> int: ...
+    @property
+    def recipe(self) -> str: ...
+    def difference(self, recipe: str) -> str | None: ...
+    def collect(self, threads: int | None = None) -> dict[str, NDArray[Any]]: ...
+    def write(
+        self, out: str | os.PathLike[str], resume: bool = False, threads: int | None = None
+    ) -> SweepSummary: ...
+    def check_memory(self) -> None: ...
+    def part(self, part: int) -> dict[str, NDArray[Any]]: ...
+    def part_file(self, part: int) -> tuple[bytes, tuple[int, str]]: ...
+    def write_part(
+        self,
+        out: str | os.PathLike[str],
+        part: int,
+        listed: tuple[int, str] | None = None,
+    ) -> tuple[tuple[int, str], bool]: ...
+    def open_folder(
+        self, out: str | os.PathLike[str], resume: bool = False
+    ) -> SweepFolder: ...
+    def manifest(self, parts: Sequence[tuple[int, str] | None]) -> str: ...
+    def listed_parts(
+        self, place: str, manifest: str, resume: bool = False
+    ) -> list[tuple[int, str] | None]: ...
+    @staticmethod
+    def part_name(part: int) -> str: ...
+    def summary(
+        self,
+        folder: str | Path,
+        parts: Sequence[tuple[int, str]],
+        computed: Sequence[int],
+    ) -> SweepSummary: ...
+@final
 class SweepSummary:
     @property
-    def folder(self) -> Path: ...
+    def folder(self) -> Path | str: ...
     @property
     def rows(self) -> int: ...
     @property
@@ -2062,25 +2123,6 @@ def secondary_tasks() -> list[dict[str, Any]]: ...
 def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...
-def sweep(
-    mechanism: Mechanism,
-    samples: int | None = None,
-    seed: int = 0,
-    over: dict[str, tuple[float, float, int]] | None = None,
-    q: ArrayLike | None = None,
-    configurations: Any = None,
-    quantities: Sequence[str] | None = None,
-    frame: str | None = None,
-    tool: ArrayLike | None = None,
-    task: str | None = None,
-    metric: str = "unit",
-    length: float | None = None,
-    out: str | os.PathLike[str] | None = None,
-    resume: bool = False,
-    threads: int | None = None,
-    vary: dict[str, tuple[float, float]] | None = None,
-    designs: int = 0,
-) -> Any: ...
 def transversals(
     lines: ArrayLike,
     length: float | None = None,
