@@ -5,10 +5,11 @@ import { Joints } from "./controls/joints";
 import { Obstacles as ObstaclePanel } from "./controls/obstacles";
 import { ServoControls } from "./controls/servo";
 import { Switches } from "./controls/switches";
-import { Tools } from "./controls/tools";
+import { isTyping, Tools } from "./controls/tools";
 import { UnitControls } from "./controls/units";
 import { socketUrl } from "./connection";
 import { h } from "./dom";
+import { History } from "./history";
 import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
 import { Overlays } from "./overlays/overlays";
@@ -108,6 +109,8 @@ function start(): void {
     play: () => session.send({ type: "play" }),
     pause: () => session.send({ type: "pause" }),
     reset: () => session.send({ type: "reset" }),
+    undo: () => history.undo(),
+    redo: () => history.redo(),
     record: () => {
       if (recorder.recording) recorder.stop();
       else recorder.start();
@@ -125,12 +128,21 @@ function start(): void {
     },
     share: () => void share(),
   });
+  const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
+  addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return;
+    const key = event.key.toLowerCase();
+    if (key === "z" && !event.shiftKey) history.undo();
+    else if (key === "y" || key === "z") history.redo();
+    else return;
+    event.preventDefault();
+  });
   const restore = new Restore(session, overlays, stage, page.toast, () => distances.ask());
 
   async function share(): Promise<void> {
     const shot = restore.now();
     if (!shot) return;
-    history.replaceState(null, "", fragment(shot));
+    window.history.replaceState(null, "", fragment(shot));
     try {
       await navigator.clipboard.writeText(location.href);
       page.toast("The link to this configuration is copied and shown in the address bar.");
@@ -159,7 +171,7 @@ function start(): void {
     obstaclePanel.build(scene);
     hold(wanted);
     compare.offer(scene);
-    restore.scene(scene);
+    if (restore.scene(scene)) history.clear();
     stage.invalidate();
   });
 
@@ -179,6 +191,8 @@ function start(): void {
     target.scale(size);
     stage.scale(size, scene.dimension === 2 ? -0.03 * size : box.min.z);
     fit();
+    // Planar mechanisms are seen in their plane.
+    stage.setOrthographic(scene.dimension === 2);
     stage.view(scene.dimension === 2 ? "top" : "corner");
     if (restore.camera()) untouched = false;
   };
@@ -221,9 +235,9 @@ function start(): void {
   });
   overlays.onChange(redraw);
   stage.onFrame(() => session.takeNewest());
-  stage.onFrame(() => labels.place(stage.camera));
+  stage.onFrame(() => labels.place(stage.eye));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, target, robot, distances, collisions, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.camera).toArray() } });
+  Object.assign(window, { viewer: { session, stage, target, robot, distances, collisions, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
 }
 
 try {

@@ -73,7 +73,7 @@ export class Obstacles {
     const box = this.stage.renderer.domElement.getBoundingClientRect();
     const at = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new Raycaster();
-    ray.setFromCamera(at, this.stage.camera);
+    ray.setFromCamera(at, this.stage.eye);
     let hit: Object3D | null = ray.intersectObject(this.group, true)[0]?.object ?? null;
     while (hit && hit.parent !== this.group) hit = hit.parent;
     if (hit) this.tell.picked(hit.name);

@@ -36,12 +36,12 @@ export class Restore {
     const { scene, state } = this.session;
     if (!scene || !state) return null;
     const { camera, orbit } = this.stage;
-    return snapshot(scene, state, this.overlays.on, [...camera.position.toArray(), ...orbit.target.toArray()]);
+    return snapshot(scene, state, this.overlays.on, [...camera.position.toArray(), ...orbit.target.toArray()], this.stage.isOrthographic);
   }
 
-  /** The first scene of a connection: the session on the other side is new. */
-  scene(scene: Scene): void {
-    if (!this.fresh) return;
+  /** The first scene of a connection: the session on the other side is new. True for it. */
+  scene(scene: Scene): boolean {
+    if (!this.fresh) return false;
     this.fresh = false;
     if (this.last?.model === scene.name) {
       this.wanted = this.last;
@@ -51,12 +51,14 @@ export class Restore {
     this.session.send({ type: "overlays", names: this.overlays.names() });
     this.begin();
     this.apply(scene);
+    return true;
   }
 
   /** Looks from where the address says; false where it says nothing. */
   camera(): boolean {
-    const numbers = this.shownCamera;
-    this.shownCamera = null;
+    const [numbers, orthographic] = [this.shownCamera, this.shownProjection];
+    this.shownCamera = this.shownProjection = null;
+    if (orthographic !== null) this.stage.setOrthographic(orthographic);
     if (!numbers) return false;
     const [x = 0, y = 0, z = 1, tx = 0, ty = 0, tz = 0] = numbers;
     this.stage.orbit.target.set(tx, ty, tz);
@@ -66,12 +68,14 @@ export class Restore {
   }
 
   private shownCamera: number[] | null = null;
+  private shownProjection: boolean | null = null;
 
   private read(): void {
     const read = parse(location.hash);
     if (typeof read === "string") this.say(read, true);
     else this.wanted = read;
     this.shownCamera = this.wanted?.camera ?? null;
+    this.shownProjection = this.wanted?.orthographic ?? null;
   }
 
   private apply(scene: Scene): void {
@@ -79,7 +83,7 @@ export class Restore {
     this.wanted = null;
     if (!shot) return;
     if (shot.model !== scene.name) {
-      this.shownCamera = null;
+      this.shownCamera = this.shownProjection = null;
       this.say(`The address is for ${shot.model}, but the model is ${scene.name}; it was ignored.`, true);
       return;
     }

@@ -9,6 +9,8 @@ type Events = {
   compare: Comparison;
   report: Report;
   failure: Failure;
+  /** A message, before it goes. */
+  sending: ToServer;
   link: { link: Link; wait: number };
   /** A state as it came, before any is dropped: for the recorder. */
   raw: string;
@@ -51,6 +53,7 @@ export class Session {
 
   /** Sends at once; gives the id that the answer will carry. */
   send(message: ToServer): number | null {
+    this.emit("sending", message);
     const id = (this.ids += 1);
     return this.connection.send({ id, ...message }) ? id : null;
   }

@@ -10,10 +10,10 @@ export type Snapshot = {
   q: number[]; target?: Pose; playing?: boolean;
   overlays?: OverlayName[];
   obstacles?: KeptObstacle[]; avoidance?: Avoidance | null;
-  camera?: number[];
+  camera?: number[]; orthographic?: boolean;
 };
 
-export function snapshot(scene: Scene, state: State, overlays: Iterable<OverlayName>, camera: number[]): Snapshot {
+export function snapshot(scene: Scene, state: State, overlays: Iterable<OverlayName>, camera: number[], orthographic: boolean): Snapshot {
   return {
     model: scene.name,
     frame: scene.frame,
@@ -31,7 +31,7 @@ export function snapshot(scene: Scene, state: State, overlays: Iterable<OverlayN
       return [{ name, shape, ...pose }];
     }),
     avoidance: scene.avoidance,
-    camera,
+    camera, orthographic,
   };
 }
 
@@ -49,6 +49,7 @@ export function fragment(shot: Snapshot): string {
   if (shot.obstacles?.length) fields.set("obstacles", JSON.stringify(shot.obstacles));
   if (shot.avoidance) fields.set("avoid", list([shot.avoidance.gap, shot.avoidance.margin]));
   if (shot.camera) fields.set("camera", list(shot.camera));
+  if (shot.orthographic !== undefined) fields.set("projection", shot.orthographic ? "orthographic" : "perspective");
   return `#${fields.toString()}`;
 }
 
@@ -77,6 +78,7 @@ export function parse(hash: string): Snapshot | string | null {
     ...(bodies ? { obstacles: bodies } : {}),
     ...(avoided ? { avoidance: { gap: avoided[0] ?? 0, margin: avoided[1] ?? 0 } } : {}),
     ...(camera ? { camera } : {}),
+    ...(fields.has("projection") ? { orthographic: fields.get("projection") === "orthographic" } : {}),
   };
 }
 

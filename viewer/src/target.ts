@@ -36,7 +36,8 @@ export class Target {
   private last: Pose | null = null;
 
   constructor(private readonly stage: Stage, private readonly moved: Moved) {
-    this.gizmo = new TransformControls(stage.camera, stage.renderer.domElement);
+    this.gizmo = new TransformControls(stage.eye, stage.renderer.domElement);
+    stage.onEye((eye) => (this.gizmo.camera = eye));
     this.gizmo.setSize(0.85);
     this.gizmo.addEventListener("dragging-changed", (event) => {
       this.dragging = event.value === true;

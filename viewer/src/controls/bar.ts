@@ -7,7 +7,7 @@ import { nextTheme, onTheme, theme } from "../theme";
 import type { Link } from "../connection";
 
 export type BarActions = {
-  play: () => void; pause: () => void; reset: () => void;
+  play: () => void; pause: () => void; reset: () => void; undo: () => void; redo: () => void;
   record: () => void; save: (format: "json" | "csv") => void; picture: () => void; share: () => void;
 };
 
@@ -22,10 +22,15 @@ export class Bar {
   private readonly record: HTMLButtonElement;
   private readonly saves: HTMLElement;
   private readonly themeButton = button("Theme", "system", () => nextTheme(), "");
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
   private playing = true;
 
   constructor(bar: HTMLElement, actions: BarActions) {
     this.play = button("Pause", "pause", () => (this.playing ? actions.pause() : actions.play()));
+    this.undo = button("Undo (Ctrl+Z)", "undo", actions.undo, "");
+    this.redo = button("Redo (Ctrl+Shift+Z)", "redo", actions.redo, "");
+    this.undoable(false, false);
     this.record = button("Record", "record", actions.record);
     this.record.setAttribute("aria-pressed", "false");
     this.saves = h(
@@ -40,6 +45,7 @@ export class Bar {
       h("div", { class: "spread" }),
       this.play,
       button("Reset", "reset", actions.reset),
+      h("span", { class: "group", role: "group", "aria-label": "History" }, this.undo, this.redo),
       h("span", { class: "rule" }),
       this.record,
       this.saves,
@@ -71,6 +77,12 @@ export class Bar {
     this.play.setAttribute("aria-label", label);
     this.play.title = label;
     fill(this.play, icon(this.playing ? "pause" : "play"), h("span", {}, label));
+  }
+
+  /** A disabled button would lose the focus. */
+  undoable(undo: boolean, redo: boolean): void {
+    this.undo.setAttribute("aria-disabled", String(!undo));
+    this.redo.setAttribute("aria-disabled", String(!redo));
   }
 
   link(link: Link): void {

@@ -19,29 +19,33 @@ export class Tools {
     point: small(null, () => this.handle("point"), "reference point"),
     obstacle: small(null, () => undefined, "obstacle"),
   };
+  private readonly flat = small("Orthographic projection (O)", () => this.swapProjection(), "orthographic");
   private hasPoint = false;
   private inTool = false;
   private turns = true;
 
   /** `released` is called when the handle is back on the target. */
-  constructor(tools: HTMLElement, private readonly target: Target, stage: Stage, fit: () => void, private readonly released: () => void) {
+  constructor(tools: HTMLElement, private readonly target: Target, private readonly stage: Stage, fit: () => void, private readonly released: () => void) {
     const group = (label: string, buttons: HTMLElement[]): HTMLElement => h("span", { class: "group", role: "group", "aria-label": label }, ...buttons);
     tools.append(
       h("span", { class: "float-row" }, group("Handle", Object.values(this.modes)), this.space, group("Dragged handle", Object.values(this.handles))),
       h(
         "span", { class: "float-row" },
+        this.flat,
         group("View direction", VIEWS.map((view) => h("button", { class: "button small", type: "button", onclick: () => stage.view(view) }, view))),
         h("button", { class: "button small", type: "button", title: "Show all (F)", "aria-label": "Show all", onclick: fit }, icon("fit")),
       ),
     );
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || isTyping(event.target)) return;
+      if (event.key === "o") this.swapProjection();
       if (event.key === "w") this.setMode("translate");
       else if (event.key === "e" && this.mayTurn()) this.setMode("rotate");
       else if (event.key === "Escape") this.handle("target");
       else if (event.key === "x") this.swapSpace();
       else if (event.key === "f") fit();
     });
+    stage.onEye(() => this.paint());
     this.paint();
   }
 
@@ -80,6 +84,10 @@ export class Tools {
     this.paint();
   }
 
+  private swapProjection(): void {
+    this.stage.setOrthographic(!this.stage.isOrthographic);
+  }
+
   private swapSpace(): void {
     this.inTool = !this.inTool;
     this.target.setSpace(this.inTool ? "local" : "world");
@@ -92,6 +100,7 @@ export class Tools {
     for (const [name, button] of Object.entries(this.modes)) press(button, mode === name);
     this.modes.rotate.disabled = !this.mayTurn();
     press(this.space, this.inTool);
+    press(this.flat, this.stage.isOrthographic);
     press(target, now === "target");
     press(point, now === "point");
     press(held, obstacle !== null);
@@ -112,6 +121,7 @@ function press(button: HTMLButtonElement, pressed: boolean): void {
   button.setAttribute("aria-pressed", String(pressed));
 }
 
-function isTyping(target: EventTarget | null): boolean {
+/** Whether a key belongs to the field in focus. */
+export function isTyping(target: EventTarget | null): boolean {
   return target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.type !== "range" && target.type !== "checkbox");
 }

@@ -1,5 +1,5 @@
 /** Short words in the view: elements over the picture, moved with the camera; those that would overlap wait. */
-import { Vector3, type PerspectiveCamera } from "three";
+import { Vector3, type Camera } from "three";
 import { h, text } from "../dom";
 
 export type Label = { text: string; at: Vector3; colour: string };
@@ -19,7 +19,7 @@ export class Labels {
   }
 
   /** Puts every label where its point is seen now. */
-  place(camera: PerspectiveCamera): void {
+  place(camera: Camera): void {
     const { clientWidth: width, clientHeight: height } = this.stage;
     const taken: { x: number; y: number; w: number }[] = [];
     const labels = [...this.all.values()].flat();

@@ -1,6 +1,6 @@
 /** The view: camera, lights, ground; draws only when somebody said that something changed. */
 import {
-  AmbientLight, Box3, Color, DirectionalLight, HemisphereLight, Mesh, PerspectiveCamera,
+  AmbientLight, Box3, Color, DirectionalLight, HemisphereLight, Mesh, OrthographicCamera, PerspectiveCamera,
   PlaneGeometry, Scene, ShadowMaterial, Sphere, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -22,7 +22,13 @@ const KEY_PAN = 24;
 
 export class Stage {
   readonly scene = new Scene();
+  /** It is turned, moved and zoomed. */
   readonly camera = new PerspectiveCamera(35, 1, 0.01, 100);
+  /** Follows it: the same direction, and the same size at the point that is turned about. */
+  private readonly parallel = new OrthographicCamera();
+  /** What is looked through. */
+  eye: PerspectiveCamera | OrthographicCamera = this.camera;
+  private readonly eyes = new Set<(eye: PerspectiveCamera | OrthographicCamera) => void>();
   readonly renderer: WebGLRenderer;
   readonly orbit: OrbitControls;
   private readonly before = new Set<() => void>();
@@ -91,6 +97,33 @@ export class Stage {
     this.paint();
   }
 
+  get isOrthographic(): boolean {
+    return this.eye === this.parallel;
+  }
+
+  setOrthographic(orthographic: boolean): void {
+    this.eye = orthographic ? this.parallel : this.camera;
+    this.follow();
+    for (const told of this.eyes) told(this.eye);
+    this.invalidate();
+  }
+
+  /** Called when another camera is looked through. */
+  onEye(told: (eye: PerspectiveCamera | OrthographicCamera) => void): void {
+    this.eyes.add(told);
+  }
+
+  private follow(): void {
+    const { camera, parallel } = this;
+    const high = camera.position.distanceTo(this.orbit.target) * Math.tan((camera.fov * Math.PI) / 360);
+    [parallel.top, parallel.bottom, parallel.right, parallel.left] = [high, -high, high * camera.aspect, -high * camera.aspect];
+    [parallel.near, parallel.far] = [-camera.far, camera.far];
+    parallel.position.copy(camera.position);
+    parallel.quaternion.copy(camera.quaternion);
+    parallel.updateProjectionMatrix();
+    parallel.updateMatrixWorld();
+  }
+
   /** Shows all of a box. */
   fit(box: Box3): void {
     if (box.isEmpty()) return;
@@ -142,7 +175,8 @@ export class Stage {
 
   private draw(): void {
     for (const work of this.before) work();
-    this.renderer.render(this.scene, this.camera);
+    if (this.isOrthographic) this.follow();
+    this.renderer.render(this.scene, this.eye);
     this.frames += 1;
   }
 

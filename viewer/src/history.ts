@@ -1,0 +1,79 @@
+/** Undo and redo: configurations with their targets, one for each thing that the user has done. */
+import type { Pose, ToServer } from "./protocol";
+import type { Session } from "./session";
+
+type Moment = { frame: string; q: number[]; target: Pose };
+
+/** What moves the robot or its target; a drag or a held key sends many of one kind. */
+const MOVES: readonly ToServer["type"][] = ["joint", "configuration", "target", "twist", "frame", "null_space", "reset"];
+/** Messages of one kind belong together while they come closer than this (ms). */
+const PAUSE = 700;
+const MOST = 200;
+
+export class History {
+  private readonly past: Moment[] = [];
+  private readonly future: Moment[] = [];
+  private kind = "";
+  private last = -Infinity;
+  private own = false;
+
+  constructor(private readonly session: Session, private readonly changed: (undo: boolean, redo: boolean) => void) {
+    session.on("sending", (message) => this.sending(message));
+  }
+
+  undo(): void {
+    this.go(this.past, this.future);
+  }
+
+  redo(): void {
+    this.go(this.future, this.past);
+  }
+
+  /** Another session: its past is not here. */
+  clear(): void {
+    this.past.length = this.future.length = 0;
+    this.forget();
+  }
+
+  private sending(message: ToServer): void {
+    if (this.own || !MOVES.includes(message.type)) return;
+    const now = performance.now();
+    const kind = "name" in message ? `${message.type} ${message.name}` : message.type;
+    const goesOn = kind === this.kind && now - this.last < PAUSE;
+    [this.kind, this.last] = [kind, now];
+    const moment = this.now();
+    if (goesOn || !moment) return;
+    this.past.push(moment);
+    if (this.past.length > MOST) this.past.shift();
+    this.future.length = 0;
+    this.tell();
+  }
+
+  private go(from: Moment[], to: Moment[]): void {
+    const [moment, now] = [from.at(-1), this.now()];
+    if (!moment || !now || moment.q.length !== now.q.length) return;
+    from.pop();
+    to.push(now);
+    this.own = true;
+    if (moment.frame !== now.frame) this.session.send({ type: "frame", name: moment.frame });
+    this.session.send({ type: "configuration", q: moment.q });
+    this.session.send({ type: "target", ...moment.target });
+    this.own = false;
+    this.forget();
+  }
+
+  /** What comes next is something new. */
+  private forget(): void {
+    this.kind = "";
+    this.tell();
+  }
+
+  private now(): Moment | null {
+    const { scene, state } = this.session;
+    return scene && state ? { frame: scene.frame, q: state.q, target: state.target } : null;
+  }
+
+  private tell(): void {
+    this.changed(this.past.length > 0, this.future.length > 0);
+  }
+}
