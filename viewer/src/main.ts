@@ -89,14 +89,14 @@ function start(): void {
   const collisions = new Collisions(() => stage.invalidate());
   const distances = new Distances(session, labels, redraw, (shown) => collisions.show(shown));
   const switches = new Switches(overlays, (shown) => robot.showShapes(shown));
-  const [pose, singular, screws] = [posePanel(), singularPanel(), screwsPanel()];
+  const [pose, singular, screws] = [posePanel(), singularPanel(redraw), screwsPanel()];
   const reports = new Reports(session);
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
   reports.watch("mobility", mobility);
   reports.watch("manipulability", capability);
   page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element, new UnitControls().panel.element);
-  inUnits(page.right, redraw);
   page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
+  inUnits(page.right, redraw);
   // A folded panel is not kept up to date.
   for (const { onToggle } of [joints.panel, servo.panel, obstaclePanel.panel, pose, singular]) onToggle(redraw);
   stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group);

@@ -105,6 +105,59 @@ test("a refused choice of actuated joints leaves the switch as the server has it
     assert.equal(await box.isChecked(), (await scene(page)).actuators.find(({ name }) => name === "q5")?.actuated);
   }));
 
+test("a panel that is opened at rest shows the state, and bars take the width that there is", () =>
+  visit(["panda"], async (page) => {
+    await until(page, 'state.servo.status === "reached"');
+    const summary = page.locator('[data-panel="singular"] > summary');
+    await summary.click();
+    await page.reload();
+    await until(page, 'state.servo.status === "reached"');
+    assert.equal(await page.locator(".bars rect").count(), 0, "folded, it draws no bars");
+    await summary.click();
+    await page.waitForFunction(() => document.querySelectorAll(".bars rect").length === 6);
+    const width = () => page.evaluate(() => {
+      const [bars, body] = [".bars", '[data-panel="singular"] > .body'].map((name) => document.querySelector(name));
+      return Number(bars?.getAttribute("viewBox")?.split(" ")[2]) - (body?.clientWidth ?? 0) + 28;
+    });
+    await page.waitForTimeout(300);
+    assert.equal(await width(), 0);
+    await page.setViewportSize({ width: 390, height: 844 });
+    await page.waitForTimeout(300);
+    assert.equal(await width(), 0);
+  }));
+
+/**
+ * Shows a state of which parts are others.
+ * @param {import("playwright-core").Page} page
+ * @param {object} parts
+ */
+const showOther = (page, parts) => page.evaluate((others) => {
+  const { session } = /** @type {any} */ (window).viewer;
+  session.state = { ...session.state, ...others };
+  session.emit("state", session.state);
+}, parts);
+
+test("a gap of null is none lost at full rank, infinite below it; a rotation has one quaternion", () =>
+  visit(["panda", "--q=0.3,0.2,0.1,-1.2,0.3,1.4,0.5"], async (page) => {
+    await until(page, 'state.servo.status === "reached"');
+    const values = [2, 1, 0.5, 0.2, 0.1];
+    const singular = (/** @type {number} */ last) => ({ singular: { values: [...values, last], threshold: 0.002, rank: last > 0 ? 6 : 5, gap: null, ratio: last / 2, length: 0.5 } });
+    const panel = page.locator('[data-panel="singular"]');
+    await showOther(page, singular(0.05));
+    assert.match(await panel.innerText(), /none lost/);
+    await showOther(page, singular(0));
+    const words = await panel.innerText();
+    assert.match(words, /∞/);
+    assert.match(words, /0 lost/);
+    assert.doesNotMatch(words, /none lost/);
+    assert.match(words, /rank 5 of 6/);
+    const { tool, target } = await page.evaluate(() => /** @type {any} */ (window).viewer.session.state);
+    await showOther(page, { target: { ...target, quaternion: tool.quaternion.map((/** @type {number} */ part) => -part) } });
+    const rows = await page.locator("tr", { has: page.locator('[data-pose^="q"]') }).evaluateAll((all) => all.map((row) => [...row.querySelectorAll("td")].map((cell) => cell.textContent)));
+    assert.equal(rows.length, 4);
+    for (const [here, there] of rows) assert.equal(here, there);
+  }));
+
 const FOLDING = ["joints", "show", "servo", "pose", "singular", "screws"];
 
 for (const folded of [false, true]) {

@@ -7,7 +7,7 @@ import { drawn } from "../scene/palette";
 import type { Labels } from "../scene/labels";
 import { discard, rod, vector } from "../scene/shapes";
 import type { Session } from "../session";
-import { digitsOf, inUnits, shown, unitOf } from "../units";
+import { digitsOf, shown, unitOf } from "../units";
 import { fieldLine, QuantityField } from "../quantity_field";
 import { empty, grid, panel, type Grid } from "./panel";
 
@@ -35,7 +35,6 @@ export class Distances {
     const show = (): void => showShapes(this.shapes.checked && this.panel.isOpen());
     this.shapes.addEventListener("change", show);
     this.margin.show(MARGIN);
-    inUnits(this.list, () => this.redraw());
     this.panel.onToggle((open) => {
       this.ask();
       if (!open) this.clear();

@@ -11,7 +11,8 @@ const TICK = 34; // room of a number below the bars
 const DECADES = 5; // below the largest value
 const MARGINS = 28; // of a panel's body
 
-export function singularPanel(): Panel & { show: (scene: Scene, state: State) => void } {
+/** `resized`: the room of the bars is another one. */
+export function singularPanel(resized: () => void): Panel & { show: (scene: Scene, state: State) => void } {
   const made = panel("singular", "Singular values", true);
   const bars = new Bars();
   const none = h("p", { class: "empty" });
@@ -22,7 +23,10 @@ export function singularPanel(): Panel & { show: (scene: Scene, state: State) =>
   // Asked for with each state, the width would be laid out with each.
   let width = 0;
   new ResizeObserver(() => {
-    width = made.body.clientWidth - MARGINS;
+    const now = made.body.clientWidth - MARGINS;
+    if (now <= 0 || now === width) return;
+    width = now;
+    resized();
   }).observe(made.body);
   return {
     ...made,
