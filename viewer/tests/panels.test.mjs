@@ -110,20 +110,20 @@ test("a panel that is opened at rest shows the state, and bars take the width th
     await until(page, 'state.servo.status === "reached"');
     const summary = page.locator('[data-panel="singular"] > summary');
     await summary.click();
+    await page.waitForFunction(() => localStorage.getItem("cylindroid-panel-singular") === "false");
     await page.reload();
     await until(page, 'state.servo.status === "reached"');
     assert.equal(await page.locator(".bars rect").count(), 0, "folded, it draws no bars");
     await summary.click();
     await page.waitForFunction(() => document.querySelectorAll(".bars rect").length === 6);
-    const width = () => page.evaluate(() => {
+    const fits = () => page.waitForFunction(() => {
       const [bars, body] = [".bars", '[data-panel="singular"] > .body'].map((name) => document.querySelector(name));
-      return Number(bars?.getAttribute("viewBox")?.split(" ")[2]) - (body?.clientWidth ?? 0) + 28;
+      return Number(bars?.getAttribute("viewBox")?.split(" ")[2]) === (body?.clientWidth ?? 0) - 28;
     });
-    await page.waitForTimeout(300);
-    assert.equal(await width(), 0);
+    await fits();
     await page.setViewportSize({ width: 390, height: 844 });
-    await page.waitForTimeout(300);
-    assert.equal(await width(), 0);
+    await page.waitForFunction(() => (document.querySelector('[data-panel="singular"] > .body')?.clientWidth ?? 0) > 350);
+    await fits();
   }));
 
 /**
