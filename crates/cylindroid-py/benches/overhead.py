@@ -5,6 +5,7 @@
 Minima of many runs, one core.
 """
 
+import itertools
 import timeit
 
 import numpy as np
@@ -23,7 +24,7 @@ def fresh(shape):
 
 def main():
     print(f"{'':28}{'one call':>12}{'in a batch':>14}  (ns for each configuration)")
-    rng = np.random.default_rng(0)
+    rng, seeds = np.random.default_rng(0), itertools.count(1)
     for name in ("panda", "ur5e"):
         robot = cy.load(name)
         q, Q = robot.home, rng.uniform(-1, 1, (100_000, robot.n))
@@ -38,6 +39,10 @@ def main():
         batch = nanoseconds(lambda: fresh((len(Q), 6, robot.n)), number=1) / len(Q)
         print(f"{'  its memory alone':28}{'':12}{batch:14.1f}")
         print(f"{name + ' pinv':28}{nanoseconds(lambda: cy.pinv(J)):12.0f}")
+        near = robot.fk(q + 0.1)
+        single = nanoseconds(lambda: robot.ik(near), number=2000)
+        fresh_solver = nanoseconds(lambda: robot.ik(near, seed=next(seeds)), number=200)
+        print(f"{name + ' ik':28}{single:12.0f}    ({fresh_solver:.0f} with a new solver)")
         servo, target = cy.Servo(robot), robot.fk(q)
         target[2, 3] -= 0.05
         print(f"{name + ' servo step':28}{nanoseconds(lambda: servo.step(q, target)):12.0f}")

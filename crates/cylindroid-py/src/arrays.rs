@@ -4,7 +4,6 @@
 //! Batches have the axis of the configurations first: `(N, n)` in, `(N, ...)` out.
 
 use cylindroid::linalg::Metric;
-use cylindroid::model::Mechanism;
 use cylindroid::tolerance::MAX_MAGNITUDE;
 use cylindroid::{Error, Matrix, Pose, Twist, Wrench};
 use numpy::{
@@ -236,46 +235,6 @@ impl<T> Many<T> {
             Self::One(x) => Many::One(f(x)?),
             Self::All(all) => Many::All(all.iter().map(f).collect::<std::result::Result<_, E>>()?),
         })
-    }
-}
-
-/// Configurations (or joint velocities) of a mechanism: `(n,)` or `(N, n)`, all finite.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Rows<'a> {
-    pub(crate) values: &'a [f64],
-    pub(crate) width: usize,
-    /// Of a batch; `None` for one configuration.
-    pub(crate) count: Option<usize>,
-}
-
-impl<'a> Rows<'a> {
-    pub(crate) fn of(
-        mechanism: &Mechanism,
-        name: &'static str,
-        numbers: &'a Numbers<'_>,
-    ) -> Result<Self> {
-        let n = mechanism.n();
-        let (width, count) = match *numbers.shape() {
-            [width] => (width, None),
-            [count, width] => (width, Some(count)),
-            _ => {
-                let reason = format!("give ({n},) for one configuration or (N, {n}) for many");
-                return Err(Failure::option(name, numbers.shape_text(), reason));
-            }
-        };
-        if width != n {
-            mechanism.check_q(name, &vec![0.0; width])?;
-        }
-        let rows = Self { values: numbers.values(), width, count };
-        match count {
-            None => mechanism.check_q(name, rows.values)?,
-            Some(_) => mechanism.check_rows(name, rows.values)?,
-        }
-        Ok(rows)
-    }
-
-    pub(crate) fn row(&self, i: usize) -> &'a [f64] {
-        &self.values[i * self.width..(i + 1) * self.width]
     }
 }
 

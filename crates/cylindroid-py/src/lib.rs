@@ -10,6 +10,7 @@ mod arrays;
 mod closed;
 mod collision;
 mod control;
+mod coordinates;
 mod error;
 mod ik;
 mod inverse;

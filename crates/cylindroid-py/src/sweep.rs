@@ -15,7 +15,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use self::own_columns::{Given, OwnColumns};
-use crate::arrays::{Numbers, Rows};
+use crate::arrays::Numbers;
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 
@@ -115,7 +116,7 @@ impl PySweepPlan {
         #[pyo3(from_py_with = argument)] samples: Option<u64>,
         #[pyo3(from_py_with = argument)] seed: u64,
         #[pyo3(from_py_with = argument)] over: Option<Bound<'_, PyDict>>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
         configurations: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] quantities: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
@@ -143,7 +144,7 @@ impl PySweepPlan {
         };
         let rest = match &q {
             None => Vec::new(),
-            Some(q) => q.vector("q")?.to_vec(),
+            Some(q) => q.vector(&mechanism, "q")?.to_vec(),
         };
         let grid = !split.coordinates.is_empty();
         let source = match (samples, grid, configurations) {
@@ -392,33 +393,10 @@ fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
 /// Configurations one after the other, of an array, of columns with names, or of a file.
 fn rows(robot: &PyMechanism, given: &Bound<'_, PyAny>) -> Result<Vec<f64>> {
     let mechanism = &robot.inner;
-    let names: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
     if let Ok(path) = given.extract::<PathBuf>() {
+        let names: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
         return Ok(parquet_configurations(&path, &names)?);
     }
-    // Mappings, data frames and tables of pyarrow.
-    let known = ["columns", "keys"].iter().find(|name| given.hasattr(**name).unwrap_or(false));
-    let has_names = known.is_some() && given.hasattr("__getitem__")?;
-    if !has_names {
-        let numbers: Numbers<'_> = entry("configurations", given)?;
-        let rows = Rows::of(mechanism, "configurations", &numbers)?;
-        return Ok(rows.values.to_vec());
-    }
-    let mut columns: Vec<Numbers<'_>> = Vec::with_capacity(names.len());
-    for name in &names {
-        let column = given.get_item(name).map_err(|_| {
-            let reason =
-                format!("it has no column '{name}'; the coordinates are {}", names.join(", "));
-            Failure::option("configurations", "the columns", reason)
-        })?;
-        columns.push(entry("configurations", &column)?);
-    }
-    let columns: Vec<&[f64]> =
-        columns.iter().map(|c| c.vector("configurations")).collect::<Result<_>>()?;
-    let count = columns.first().map_or(0, |c| c.len());
-    if let Some(i) = columns.iter().position(|c| c.len() != count) {
-        let value = format!("column '{}' of {} rows", names[i], columns[i].len());
-        return Err(Failure::option("configurations", value, format!("others have {count}")));
-    }
-    Ok((0..count).flat_map(|i| columns.iter().map(move |c| c[i])).collect())
+    let given: Coordinates<'_> = entry("configurations", given)?;
+    Ok(Rows::of(mechanism, "configurations", &given)?.values.to_vec())
 }

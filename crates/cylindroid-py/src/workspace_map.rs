@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::{self, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument, count, entry};
 use crate::mechanism::PyMechanism;
 use crate::sweep::axes;
@@ -184,7 +185,7 @@ pub(crate) fn workspace_map<'py>(
     #[pyo3(from_py_with = argument)] free: Option<Vec<String>>,
     #[pyo3(from_py_with = argument)] frame: Option<&str>,
     tool: Option<Numbers<'py>>,
-    q: Option<Numbers<'py>>,
+    q: Option<Coordinates<'py>>,
     #[pyo3(from_py_with = count)] starts: usize,
     #[pyo3(from_py_with = argument)] seed: u64,
     #[pyo3(from_py_with = argument)] loci: bool,
@@ -200,7 +201,7 @@ pub(crate) fn workspace_map<'py>(
         axes: axes(&over)?,
         held,
         end_effector: Some(robot.reference_or_tool(frame, tool.as_ref())?),
-        start: q.as_ref().map(|q| q.vector("q").map(<[f64]>::to_vec)).transpose()?,
+        start: q.as_ref().map(|q| q.vector(&mechanism, "q").map(<[f64]>::to_vec)).transpose()?,
         starts,
         seed,
         loci,

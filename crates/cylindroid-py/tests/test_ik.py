@@ -1,5 +1,7 @@
 """Inverse kinematics from Python."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -284,3 +286,50 @@ def test_input_is_checked():
         with pytest.raises(kind):
             call()
     assert r.ik(np.zeros((0, 4, 4))).q.shape == (0, 7)
+
+
+QUESTIONS = [
+    {},
+    {"frame": "link4", "task": "position"},
+    {"q0": [0.3] * 7},
+    {"nearest": True, "q0": [0.2] * 7},
+    {"posture": [0.1, 0.2, 0.3, -1.5, 0.1, 1.5, 0.4]},
+    {"task": "x,y,z", "seed": 5},
+    {"fixed": ["panda_joint3"], "q0": [0.1] * 7},
+    {"tolerance_position": 1e-4},
+    {"tool": np.diag([1.0, -1, -1, 1])},
+    {"half_spaces": [cy.HalfSpace("link4", [0.0, 0, -1], [0.0, 0, 1])]},
+]
+
+
+def test_a_kept_solver_gives_the_answers_of_a_new_one():
+    """Questions in turn, more than are kept; the same from several threads at once."""
+    kept = cy.load("panda")
+    targets = kept.fk(rng.uniform(kept.lower, kept.upper, (12, 7)))
+    targets[5, 0, 3] += 3.0
+    asked = [(i, rng.integers(len(QUESTIONS))) for i in rng.permutation(np.arange(60) % 12)]
+    asked = [(i, k) for i, k in asked for _ in range(1 + (k == 0))]
+
+    def answer(robot, i, k):
+        found = robot.ik(targets[i], **QUESTIONS[k])
+        return found.q.tobytes(), found.iterations, found.success
+
+    expected = [answer(cy.load("panda"), i, k) for i, k in asked]
+    assert [answer(kept, i, k) for i, k in asked] == expected
+    with ThreadPoolExecutor(4) as threads:
+        assert list(threads.map(lambda ask: answer(kept, *ask), asked)) == expected
+    assert 20 < sum(success for *_, success in expected) < len(expected)
+
+
+def test_an_error_leaves_no_solver_behind():
+    kept = cy.load("panda")
+    target = kept.fk(kept.home + 0.1)
+    expected = cy.load("panda").ik(target).q
+    np.testing.assert_array_equal(kept.ik(target).q, expected)
+    with pytest.raises(cy.NotFiniteError):
+        kept.ik(target, q0=[np.nan] * 7)
+    with pytest.raises(cy.InvalidOptionError):
+        kept.ik(np.zeros((4, 4)))
+    np.testing.assert_array_equal(kept.ik(target).q, expected)
+    other = cy.load("panda").with_tool("link4").ik(target).q
+    np.testing.assert_array_equal(kept.with_tool("link4").ik(target).q, other)

@@ -227,7 +227,7 @@ class Robot:
 
     def islimit(self, q: ArrayLike) -> list[bool]:
         """For each coordinate, true at or beyond a limit; q of shape (n,)."""
-        q, (lower, upper) = np.asarray(q, dtype=float), self.qlim
+        q, (lower, upper) = self.mechanism.ordered(q), self.qlim
         return [bool(x) for x in (q <= lower) | (q >= upper)]
 
     def random_q(self, seed: int | None = None) -> NDArray[np.float64]:
@@ -348,7 +348,7 @@ class Robot:
         task = self._task(axes)
         if method not in ("yoshikawa", "invcondition"):
             raise ValueError(f"method = {method!r}: 'yoshikawa' or 'invcondition'")
-        q = self.qr if q is None else np.asarray(q, dtype=float)
+        q = self.mechanism.ordered(self.qr if q is None else q)
         found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
         possible = min(len(task.split(",")), self.n)
         values = []

@@ -3,7 +3,8 @@
 use cylindroid::closure::{Assembly, LoopClosureError, assemble};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
@@ -128,7 +129,7 @@ impl PyMechanism {
     fn assemble(
         &self,
         py: Python<'_>,
-        guess: Option<Numbers<'_>>,
+        guess: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] hold: Option<Vec<String>>,
     ) -> Result<PyAssembly> {
         let m = &self.inner;

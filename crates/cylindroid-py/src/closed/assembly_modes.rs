@@ -4,7 +4,7 @@ use cylindroid::closure::{ModeOptions, assembly_modes};
 use pyo3::prelude::*;
 
 use super::PyAssembly;
-use crate::arrays::Numbers;
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::table;
@@ -108,7 +108,7 @@ impl PyMechanism {
     fn assembly_modes(
         &self,
         py: Python<'_>,
-        guess: Option<Numbers<'_>>,
+        guess: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] hold: Option<Vec<String>>,
         #[pyo3(from_py_with = count)] starts: usize,
         #[pyo3(from_py_with = argument)] seed: u64,

@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use super::PyLoopClosureError;
 use super::object::object;
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
@@ -327,7 +328,7 @@ impl PyMechanism {
     fn constraint<'py>(
         &self,
         py: Python<'py>,
-        q: Option<Numbers<'py>>,
+        q: Option<Coordinates<'py>>,
         #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,

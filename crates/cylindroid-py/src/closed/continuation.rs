@@ -3,7 +3,8 @@
 use cylindroid::closure::{ContinuationOptions, ContinuationResult, PathEnd, track_path};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::screws::PyScrew;
@@ -119,7 +120,7 @@ impl PyMechanism {
     fn track_path(
         &self,
         py: Python<'_>,
-        start: Numbers<'_>,
+        start: Coordinates<'_>,
         #[pyo3(from_py_with = argument)] goal: std::collections::BTreeMap<String, f64>,
         #[pyo3(from_py_with = argument)] step: f64,
         #[pyo3(from_py_with = argument)] least_distance: Option<f64>,
@@ -129,7 +130,7 @@ impl PyMechanism {
         let goals: Vec<f64> = goal.values().copied().collect();
         let mut options = ContinuationOptions { step, ..ContinuationOptions::default() };
         options.least_distance = least_distance.unwrap_or(options.least_distance);
-        let start = start.vector("start")?;
+        let start = start.vector(&self.inner, "start")?;
         let inner = py.detach(|| track_path(&self.inner, start, &prescribed, &goals, options))?;
         Ok(PyContinuationResult { inner })
     }

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use super::PyConstraint;
 use super::metrics::Question;
 use crate::arrays::{self, Array, Many, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
@@ -144,7 +145,7 @@ impl PyMechanism {
     fn manipulability_gradient(
         &self,
         py: Python<'_>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] measure: &str,
         #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,

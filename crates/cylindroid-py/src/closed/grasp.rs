@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 
 use super::curvature::Curvature;
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -221,7 +222,7 @@ impl PyMechanism {
     fn grasp_quality(
         &self,
         py: Python<'_>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
         #[pyo3(from_py_with = argument)] mu: Option<f64>,
         #[pyo3(from_py_with = argument)] torsion: Option<f64>,

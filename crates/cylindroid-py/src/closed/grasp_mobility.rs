@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use super::grasp::PyFingerContact;
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 
@@ -192,7 +193,7 @@ impl PyMechanism {
     fn grasp_mobility(
         &self,
         py: Python<'_>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
     ) -> Result<PyGraspMobility> {
         let m = &self.inner;

@@ -10,6 +10,7 @@ use super::metrics::{JointMetric, Question};
 use super::object::object;
 use super::{PyConstraint, PySpectrum};
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
@@ -249,7 +250,7 @@ impl PyMechanism {
     fn manipulability<'py>(
         &self,
         py: Python<'py>,
-        q: Option<Numbers<'py>>,
+        q: Option<Coordinates<'py>>,
         #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
         #[pyo3(from_py_with = argument)] task: Option<Bound<'py, PyAny>>,

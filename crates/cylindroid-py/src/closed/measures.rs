@@ -7,7 +7,8 @@ use pyo3::types::PyDict;
 
 use super::PyConstraint;
 use super::metrics::Question;
-use crate::arrays::{Numbers, Rows};
+use crate::arrays::Numbers;
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::threads;
@@ -81,7 +82,7 @@ impl PyMechanism {
     fn measures<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
         Wu: Option<Numbers<'py>>,

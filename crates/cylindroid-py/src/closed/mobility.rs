@@ -12,7 +12,8 @@ use super::object::object;
 use super::{
     PyConstraint, PyFiniteMobility, PyLimb, PyLoopClosureError, PySingularity, PyTransmission,
 };
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
@@ -417,7 +418,7 @@ impl PyMechanism {
     fn mobility<'py>(
         &self,
         py: Python<'py>,
-        q: Option<Numbers<'py>>,
+        q: Option<Coordinates<'py>>,
         #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,

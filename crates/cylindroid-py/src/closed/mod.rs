@@ -28,7 +28,8 @@ mod transmitted;
 
 use pyo3::prelude::*;
 
-use crate::arrays::{Many, Numbers, Rows};
+use crate::arrays::Many;
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::Result;
 use crate::mechanism::PyMechanism;
 
@@ -57,7 +58,7 @@ impl PyMechanism {
     fn constraints(
         &self,
         py: Python<'_>,
-        q: Option<&Numbers<'_>>,
+        q: Option<&Coordinates<'_>>,
         actuated: Option<&[String]>,
         reference: Option<&str>,
         length: Option<f64>,

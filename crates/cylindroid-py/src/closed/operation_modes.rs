@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::singularity::counts_of;
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::table;
@@ -237,7 +238,7 @@ impl PyMechanism {
     fn operation_modes(
         &self,
         py: Python<'_>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = count)] starts: usize,
         #[pyo3(from_py_with = argument)] seed: u64,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,

@@ -9,7 +9,8 @@ use pyo3::types::PyDict;
 
 use super::PyTransmittedWrench;
 use super::object::object;
-use crate::arrays::{self, Array, Many, Numbers, Rows};
+use crate::arrays::{self, Array, Many, Numbers};
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::{Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::screws::PyScrew;
@@ -312,7 +313,7 @@ impl PyMechanism {
     fn stiffness<'py>(
         &self,
         py: Python<'py>,
-        q: Option<Numbers<'py>>,
+        q: Option<Coordinates<'py>>,
         #[pyo3(from_py_with = argument)] actuated: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] reference: Option<&str>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,

@@ -13,6 +13,7 @@ use pyo3::prelude::*;
 pub(crate) use self::distances::PyDistances;
 use self::shape::{Sizes, geometry};
 use crate::arrays::Numbers;
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument, count};
 use crate::mechanism::PyMechanism;
 
@@ -177,10 +178,12 @@ impl PyCollisionModel {
     #[pyo3(signature = (q, margin=0.1))]
     fn near(
         slf: &Bound<'_, Self>,
-        q: Numbers<'_>,
+        q: Coordinates<'_>,
         #[pyo3(from_py_with = argument)] margin: f64,
     ) -> Result<PyDistances> {
-        slf.try_borrow_mut().map_err(in_use)?.near_at(q.vector("q")?, margin)
+        let own = &mut *slf.try_borrow_mut().map_err(in_use)?;
+        let q = q.vector(own.inner.mechanism(), "q")?;
+        own.near_at(q, margin)
     }
 
     /// Adds an obstacle, which is watched against all links that can move.
@@ -306,13 +309,13 @@ impl PyMechanism {
     #[pyo3(signature = (q, margin=f64::INFINITY, *, srdf=None, meshes="convex_hull"))]
     fn distances(
         &self,
-        q: Numbers<'_>,
+        q: Coordinates<'_>,
         #[pyo3(from_py_with = argument)] margin: f64,
         #[pyo3(from_py_with = argument)] srdf: Option<PathBuf>,
         #[pyo3(from_py_with = argument)] meshes: &str,
     ) -> Result<PyDistances> {
         let mut model = model(&self.inner, (None, srdf), meshes, (0, 0))?;
-        let state = self.inner.state(q.vector("q")?)?;
+        let state = self.inner.state(q.vector(&self.inner, "q")?)?;
         PyDistances::of(&mut model, &state, margin)
     }
 }

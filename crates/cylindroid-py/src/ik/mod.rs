@@ -1,5 +1,6 @@
 //! Inverse kinematics.
 
+mod prepared;
 mod search;
 mod solution;
 
@@ -9,13 +10,16 @@ use cylindroid::ik::{IkOptions, Solver, solve, solve_distinct};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use self::prepared::Kept;
 use self::search::Search;
-use crate::arrays::{self, Array, Many, Numbers, Rows};
+use crate::arrays::{self, Array, Many, Numbers};
 use crate::collision::in_use;
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::{Failure, Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::tasks::{PyCollisionAvoidance, PyHalfSpace, PyMotionTask};
 
+pub(crate) use prepared::Prepared;
 pub(crate) use solution::PySolution;
 
 /// The bodies of distances to keep, and the gap.
@@ -142,7 +146,7 @@ impl PyMechanism {
         py: Python<'_>,
         target: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
-        q0: Option<Numbers<'_>>,
+        q0: Option<Coordinates<'_>>,
         tool: Option<Numbers<'_>>,
         task: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
@@ -150,7 +154,7 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] weights: Option<Bound<'_, PyDict>>,
         #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
         #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
-        posture: Option<Numbers<'_>>,
+        posture: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'_, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
@@ -200,24 +204,32 @@ impl PyMechanism {
             return Ok(PySolution { inner, n: robot.n() });
         }
         let inner = py.detach(|| {
-            let mut solver = Solver::new(robot, &targets.goals, &options)?;
-            if let Some((model, gap)) = bodies {
-                solver.avoid(model, gap)?;
-            }
+            let goals = &targets.goals;
+            // Bodies may have moved since the last call.
+            let is_kept = bodies.is_none();
+            let mut own = match bodies {
+                None => self.prepared.take(robot, goals, &options)?,
+                Some((model, gap)) => {
+                    let mut own = Kept::new(robot, goals, &options)?;
+                    own.solver.avoid(model, gap)?;
+                    own
+                }
+            };
             let mut solve = |i: usize| {
                 if let Some(starts) = &starts {
-                    solver.set_initial_guess(starts.row(if starts.count.is_some() {
-                        i
-                    } else {
-                        0
-                    }))?;
+                    let place = if starts.count.is_some() { i } else { 0 };
+                    own.solver.set_initial_guess(starts.row(place))?;
                 }
-                solver.solve(&targets.at(i))
+                own.solver.solve(&targets.at(i))
             };
-            Ok::<_, Error>(match targets.count() {
+            let found = match targets.count() {
                 None => Many::One(solve(0)?),
                 Some(count) => Many::All((0..count).map(solve).collect::<cylindroid::Result<_>>()?),
-            })
+            };
+            if is_kept {
+                self.prepared.keep(own);
+            }
+            Ok::<_, Error>(found)
         })?;
         Ok(PySolution { inner, n: robot.n() })
     }
@@ -255,14 +267,14 @@ impl PyMechanism {
         target: Option<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = count)] count: usize,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
-        q0: Option<Numbers<'py>>,
+        q0: Option<Coordinates<'py>>,
         tool: Option<Numbers<'py>>,
         task: Option<Bound<'py, PyAny>>,
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
         #[pyo3(from_py_with = argument)] weights: Option<Bound<'py, PyDict>>,
         #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
         #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
-        posture: Option<Numbers<'py>>,
+        posture: Option<Coordinates<'py>>,
         #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'py, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
@@ -289,7 +301,7 @@ impl PyMechanism {
         let mut options = search.options(self)?;
         let bodies = bodies(py, collisions.as_deref())?;
         if let Some(q0) = &q0 {
-            let q0 = q0.vector("q0")?;
+            let q0 = q0.vector(robot, "q0")?;
             robot.check_q("q0", q0)?;
             options.initial_guess = Some(q0.to_vec());
         }

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{Many, Numbers, pose_of};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -64,7 +65,7 @@ pub(super) struct Search<'a, 'py> {
     pub(super) fixed: Option<Vec<String>>,
     pub(super) tasks: Option<Vec<Py<PyMotionTask>>>,
     pub(super) half_spaces: Option<Vec<Py<PyHalfSpace>>>,
-    pub(super) posture: Option<Numbers<'py>>,
+    pub(super) posture: Option<Coordinates<'py>>,
     pub(super) tolerance_position: f64,
     pub(super) tolerance_orientation: f64,
     pub(super) seed: u64,
@@ -79,7 +80,8 @@ impl Search<'_, '_> {
     }
 
     pub(super) fn options(&self, mechanism: &PyMechanism) -> Result<IkOptions> {
-        let posture = self.posture.as_ref().map(|q| q.vector("posture")).transpose()?;
+        let posture =
+            self.posture.as_ref().map(|q| q.vector(&mechanism.inner, "posture")).transpose()?;
         let posture = match (posture, self.goals(mechanism)?.1) {
             (Some(_), Some(_)) => {
                 let reason = "there is a PostureTask as well; give one of them";

@@ -6,6 +6,7 @@ use pyo3::types::PyDict;
 
 use super::{PyInverse, parameters_of};
 use crate::arrays::{Many, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -64,7 +65,7 @@ impl PyMechanism {
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn inverse(
         &self,
-        q: Numbers<'_>,
+        q: Coordinates<'_>,
         #[pyo3(from_py_with = argument)] method: &str,
         twist: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
@@ -82,7 +83,7 @@ impl PyMechanism {
         let of = self.end_effector(frame, tool.as_ref())?;
         let reference = options::reference_of(reference)?;
         let twist = twist.map(|t| t.twist("twist")).transpose()?;
-        let state = self.inner.state(q.vector("q")?)?;
+        let state = self.inner.state(q.vector(&self.inner, "q")?)?;
         let inverse = choice.inverse(&state, of, reference, twist)?;
         let jacobian = state.jacobian(of, reference);
         Ok(PyInverse::new(&Many::One(jacobian), Many::One(inverse), (6, self.inner.n())))

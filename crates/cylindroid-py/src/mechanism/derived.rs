@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 
 use super::{Origin, PyMechanism};
-use crate::arrays::Numbers;
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 
 #[pymethods]
@@ -38,7 +38,7 @@ impl PyMechanism {
     fn with_fixed_joints(
         &self,
         #[pyo3(from_py_with = argument)] names: Vec<String>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
     ) -> Result<Self> {
         let q = self.or_home("q", q.as_ref())?.to_vec();
         let inner = self.inner.with_fixed_joints(&names, &q)?;

@@ -6,7 +6,8 @@ use cylindroid::manipulability::actuated_inertia;
 use pyo3::prelude::*;
 
 use super::PyMechanism;
-use crate::arrays::{self, Array, Numbers, Rows};
+use crate::arrays::{self, Array};
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::Result;
 
 #[pymethods]
@@ -33,7 +34,7 @@ impl PyMechanism {
     /// DimensionError, NotFiniteError
     ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
     #[pyo3(signature = (q))]
-    fn mass_matrix<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+    fn mass_matrix<'py>(&self, py: Python<'py>, q: Coordinates<'py>) -> Result<Array<'py>> {
         self.inner.check_masses()?;
         let n = self.inner.n();
         let rows = Rows::of(&self.inner, "q", &q)?;
@@ -71,7 +72,7 @@ impl PyMechanism {
     /// DimensionError, NotFiniteError
     ///     For a q of the wrong size or with an entry that is not finite, naming the joint.
     #[pyo3(signature = (q))]
-    fn actuated_inertia<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+    fn actuated_inertia<'py>(&self, py: Python<'py>, q: Coordinates<'py>) -> Result<Array<'py>> {
         let loops = self.inner.loops().iter().filter(|l| l.actuated).count();
         let a = self.inner.actuated().count() + loops;
         let rows = Rows::of(&self.inner, "q", &q)?;

@@ -5,7 +5,8 @@ use cylindroid::{Error, Matrix};
 use pyo3::prelude::*;
 
 use super::PyMechanism;
-use crate::arrays::{self, Array, Numbers, Rows};
+use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::{Coordinates, Rows};
 use crate::error::{Failure, Result, argument};
 use crate::options;
 use crate::options::reference_of;
@@ -26,7 +27,11 @@ fn is_batch(rows: &Rows<'_>) -> bool {
 }
 
 impl PyMechanism {
-    fn pair<'a>(&self, q: &'a Numbers<'_>, qd: &'a Numbers<'_>) -> Result<(Rows<'a>, Rows<'a>)> {
+    fn pair<'a>(
+        &self,
+        q: &'a Coordinates<'_>,
+        qd: &'a Coordinates<'_>,
+    ) -> Result<(Rows<'a>, Rows<'a>)> {
         let rows = Rows::of(&self.inner, "q", q)?;
         let rates = Rows::of(&self.inner, "qd", qd)?;
         if rows.count != rates.count {
@@ -76,7 +81,7 @@ impl PyMechanism {
     fn fk<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
@@ -114,7 +119,7 @@ impl PyMechanism {
     /// DimensionError, NotFiniteError
     ///     As `fk`.
     #[pyo3(signature = (q))]
-    fn fk_all<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+    fn fk_all<'py>(&self, py: Python<'py>, q: Coordinates<'py>) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let mut state = self.inner.state(self.inner.home())?;
         let frames = self.inner.frames().len();
@@ -161,7 +166,7 @@ impl PyMechanism {
     fn joint_axes<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] side: &str,
     ) -> Result<Array<'py>> {
         let on_parent = match side {
@@ -211,7 +216,7 @@ impl PyMechanism {
     /// >>> r.contact_points(r.home)[:, 1].mean(0).round(3)
     /// array([0.64 , 0.092, 0.437])
     #[pyo3(signature = (q))]
-    fn contact_points<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
+    fn contact_points<'py>(&self, py: Python<'py>, q: Coordinates<'py>) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let mut state = self.inner.state(self.inner.home())?;
         arrays::written_rows(py, rows.count, &[self.inner.contacts().len(), 2, 3], |i, out| {
@@ -264,7 +269,7 @@ impl PyMechanism {
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
@@ -321,7 +326,7 @@ impl PyMechanism {
     fn hessian<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
@@ -371,8 +376,8 @@ impl PyMechanism {
     fn jacobian_dot<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
-        qd: Numbers<'py>,
+        q: Coordinates<'py>,
+        qd: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
@@ -416,7 +421,7 @@ impl PyMechanism {
     fn analytical_jacobian<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] angles: &str,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         tool: Option<Numbers<'py>>,
@@ -460,8 +465,8 @@ impl PyMechanism {
     fn integrate<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
-        qd: Numbers<'py>,
+        q: Coordinates<'py>,
+        qd: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] dt: f64,
     ) -> Result<Array<'py>> {
         let n = self.inner.n();

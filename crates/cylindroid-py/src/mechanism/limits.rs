@@ -3,7 +3,8 @@
 use pyo3::prelude::*;
 
 use super::{Origin, PyMechanism};
-use crate::arrays::{self, Array, Numbers};
+use crate::arrays::{self, Array};
+use crate::coordinates::Coordinates;
 use crate::error::Result;
 use crate::options;
 
@@ -93,8 +94,8 @@ impl PyMechanism {
     /// ------
     /// DimensionError, NotFiniteError
     #[pyo3(signature = (q))]
-    fn outside_limits(&self, q: Numbers<'_>) -> Result<Vec<&str>> {
-        let q = q.vector("q")?;
+    fn outside_limits(&self, q: Coordinates<'_>) -> Result<Vec<&str>> {
+        let q = q.vector(&self.inner, "q")?;
         self.inner.check_q("q", q)?;
         let outside = self.inner.outside_limits(q);
         Ok(outside.map(|i| self.inner.coordinates()[i].name.as_str()).collect())

@@ -6,6 +6,7 @@ mod joint;
 mod kinematics;
 mod limits;
 pub(crate) mod load;
+mod ordered;
 mod parameter;
 mod srdf;
 
@@ -22,7 +23,9 @@ use pyo3::types::IntoPyDict;
 use pyo3::{IntoPyObjectExt, intern};
 
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
+use crate::ik::Prepared;
 use crate::options;
 use crate::table::{self, Table};
 
@@ -81,6 +84,8 @@ pub(crate) struct PyMechanism {
     pub(crate) origin: Origin,
     /// Generic counts computed by `measures`.
     pub(crate) ordinary: Ordinary,
+    /// Solvers of the last calls of `ik`.
+    pub(crate) prepared: Prepared,
 }
 
 /// The source of a mechanism, for pickling.
@@ -132,7 +137,7 @@ impl Ordinary {
 
 impl PyMechanism {
     pub(crate) fn new(inner: Mechanism, origin: Origin) -> Self {
-        Self { inner, origin, ordinary: Ordinary::default() }
+        Self { inner, origin, ordinary: Ordinary::default(), prepared: Prepared::default() }
     }
 
     pub(crate) fn end_effector(
@@ -178,9 +183,9 @@ impl PyMechanism {
     pub(crate) fn or_home<'a>(
         &'a self,
         name: &'static str,
-        given: Option<&'a Numbers<'_>>,
+        given: Option<&'a Coordinates<'_>>,
     ) -> Result<&'a [f64]> {
-        given.map_or(Ok(self.inner.home()), |given| given.vector(name))
+        given.map_or(Ok(self.inner.home()), |given| given.vector(&self.inner, name))
     }
 
     fn frame_name(&self, id: cylindroid::FrameId) -> &str {

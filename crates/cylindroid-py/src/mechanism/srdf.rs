@@ -8,7 +8,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use super::{Origin, PyMechanism};
-use crate::arrays::Numbers;
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 
 /// What an SRDF says about a robot: groups of joints, named states, end effectors.
@@ -145,7 +145,7 @@ impl PySrdf {
         &self,
         #[pyo3(from_py_with = argument)] name: String,
         #[pyo3(from_py_with = argument)] robot: PyRef<'_, PyMechanism>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
     ) -> Result<PyMechanism> {
         let q = robot.or_home("q", q.as_ref())?.to_vec();
         let inner = self.inner.group(&name, &robot.inner, &q)?;
@@ -179,7 +179,7 @@ impl PySrdf {
         py: Python<'py>,
         #[pyo3(from_py_with = argument)] state: &str,
         #[pyo3(from_py_with = argument)] robot: PyRef<'py, PyMechanism>,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
     ) -> Result<Bound<'py, PyArray1<f64>>> {
         let q = robot.or_home("q", q.as_ref())?;
         Ok(self.inner.configuration(state, &robot.inner, q)?.into_pyarray(py))

@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 
 use super::{bounds, times};
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 use crate::mechanism::PyMechanism;
 use crate::table;
@@ -49,8 +50,8 @@ impl PyJointMove {
         duration = None))]
     fn new(
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
-        q: Numbers<'_>,
-        to: Numbers<'_>,
+        q: Coordinates<'_>,
+        to: Coordinates<'_>,
         speed: Option<Numbers<'_>>,
         acceleration: Option<Numbers<'_>>,
         jerk: Option<Numbers<'_>>,
@@ -58,7 +59,7 @@ impl PyJointMove {
     ) -> Result<Self> {
         let (length, angle) = bounds([&speed, &acceleration, &jerk], true)?;
         let defaults = JointDefaults { length, angle };
-        let (q, to) = (q.vector("q")?, to.vector("to")?);
+        let (q, to) = (q.vector(&mechanism.inner, "q")?, to.vector(&mechanism.inner, "to")?);
         mechanism.inner.check_q("q", q)?;
         mechanism.inner.check_q("to", to)?;
         let mut inner = JointMove::within_limits(&mechanism.inner, q, to, &defaults)?;

@@ -74,7 +74,8 @@ impl PyProjector {
         };
         let motions = columns("motions", &motions)?;
         let twists = if along.shape().is_empty() { vec![] } else { columns("along", &along)? };
-        if along.values().iter().any(|x| x.is_nan()) {
+        let is_pitch = along.shape().is_empty();
+        if along.values().iter().any(|x| x.is_nan() || !(is_pitch || x.is_finite())) {
             Error::check_finite("along", along.values())?;
         }
         let way = match (along.shape(), along.values()) {

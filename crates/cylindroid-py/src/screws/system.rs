@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use super::pitch::check_pitch;
 use super::{PyScrew, scale_of, screw_list};
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
 use crate::table::{self, Table};
@@ -386,7 +387,7 @@ impl PyMechanism {
     #[pyo3(signature = (q = None, frame = None, length = None, center = None, noise = None))]
     fn screw_system(
         &self,
-        q: Option<Numbers<'_>>,
+        q: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         #[pyo3(from_py_with = argument)] length: Option<f64>,
         center: Option<Numbers<'_>>,
@@ -396,7 +397,7 @@ impl PyMechanism {
         let length = length.unwrap_or(mechanism.reach());
         let options = scale_of(Some(length), center.as_ref(), noise)?;
         let q = match &q {
-            Some(q) => q.vector("q")?.to_vec(),
+            Some(q) => q.vector(mechanism, "q")?.to_vec(),
             None => mechanism.home().to_vec(),
         };
         let of = self.end_effector(frame, None)?;

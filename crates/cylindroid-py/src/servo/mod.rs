@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument};
 use crate::inverse::parameters_of;
 use crate::mechanism::PyMechanism;
@@ -232,7 +233,7 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] length: Option<f64>,
         #[pyo3(from_py_with = argument)] joint_weights: Option<JointWeights<'_>>,
         secondary: Option<Bound<'_, PyAny>>,
-        posture: Option<Numbers<'_>>,
+        posture: Option<Coordinates<'_>>,
         #[pyo3(from_py_with = argument)] null_space: &str,
         #[pyo3(from_py_with = argument)] task: Option<&str>,
         #[pyo3(from_py_with = argument)] task_axes: Option<&str>,
@@ -366,13 +367,14 @@ impl PyServo {
     fn step<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         target: Numbers<'py>,
         secondary: Option<Numbers<'py>>,
         feed_forward: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let target = moving_target(&target, feed_forward.as_ref())?;
         let running = &mut *self.lock()?;
+        let q = q.vector(running.servo.mechanism(), "q")?;
         let desired = match &secondary {
             None => &[],
             Some(desired) => {
@@ -381,7 +383,7 @@ impl PyServo {
                 desired
             }
         };
-        running.last = Some(running.servo.step_with(q.vector("q")?, target, desired)?);
+        running.last = Some(running.servo.step_with(q, target, desired)?);
         running.twist = None;
         Ok(arrays::vector(py, running.servo.joint_velocities()))
     }
@@ -413,12 +415,13 @@ impl PyServo {
     fn step_twist<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         twist: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
         let twist = twist.as_ref().map(|twist| twist.twist("twist")).transpose()?;
         let running = &mut *self.lock()?;
-        let step = running.servo.step_twist(q.vector("q")?, twist)?;
+        let q = q.vector(running.servo.mechanism(), "q")?;
+        let step = running.servo.step_twist(q, twist)?;
         (running.last, running.twist) = (Some(step.step), Some(step));
         Ok(arrays::vector(py, running.servo.joint_velocities()))
     }
@@ -440,8 +443,9 @@ impl PyServo {
     /// ------
     /// DimensionError, NotFiniteError
     #[pyo3(signature = (q))]
-    fn advance<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
-        let (q, servo) = (q.vector("q")?, &self.lock()?.servo);
+    fn advance<'py>(&self, py: Python<'py>, q: Coordinates<'py>) -> Result<Array<'py>> {
+        let servo = &self.lock()?.servo;
+        let q = q.vector(servo.mechanism(), "q")?;
         servo.mechanism().check_q("q", q)?;
         let mut next = q.to_vec();
         servo.advance(&mut next);

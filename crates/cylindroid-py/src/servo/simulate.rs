@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 
 use super::{PyMotionResult, PyServo, PyTrajectory};
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument, count, entry};
 use crate::motion::{PyCartesianMove, PyWaypointMove};
 
@@ -43,7 +44,7 @@ impl PyServo {
     fn simulate(
         &self,
         py: Python<'_>,
-        q: Numbers<'_>,
+        q: Coordinates<'_>,
         target: Bound<'_, PyAny>,
         #[pyo3(from_py_with = argument)] duration: f64,
         #[pyo3(from_py_with = argument)] record: bool,
@@ -56,8 +57,8 @@ impl PyServo {
                 Err(_) => Goal::Pose(entry::<Numbers<'_>>("target", &target)?.pose("target")?),
             },
         };
-        let q = q.vector("q")?;
         let running = &mut *self.lock()?;
+        let q = q.vector(running.servo.mechanism(), "q")?;
         let servo = &mut running.servo;
         servo.reset();
         let (n, dt) = (servo.mechanism().n(), servo.options().dt);
@@ -106,12 +107,13 @@ impl PyServo {
     fn find_reachable_configuration<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         target: Numbers<'py>,
         #[pyo3(from_py_with = count)] max_restarts: usize,
     ) -> Result<Option<Array<'py>>> {
-        let (q, target) = (q.vector("q")?, target.pose("target")?);
+        let target = target.pose("target")?;
         let servo = &self.lock()?.servo;
+        let q = q.vector(servo.mechanism(), "q")?;
         let found = py.detach(|| find_reachable_configuration(servo, q, target, max_restarts))?;
         Ok(found.map(|found| arrays::vector(py, &found.q)))
     }

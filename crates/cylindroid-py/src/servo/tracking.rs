@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 
 use super::{PyServo, moving_target};
 use crate::arrays::{self, Array, Numbers};
+use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 
 #[pymethods]
@@ -92,9 +93,10 @@ impl PyServo {
     /// InvalidOptionError
     ///     For open loops.
     #[pyo3(signature = (q))]
-    fn start_from(&self, q: Numbers<'_>) -> Result<()> {
+    fn start_from(&self, q: Coordinates<'_>) -> Result<()> {
         let running = &mut *self.lock()?;
-        running.servo.start_from(q.vector("q")?)?;
+        let q = q.vector(running.servo.mechanism(), "q")?;
+        running.servo.start_from(q)?;
         running.last = None;
         Ok(())
     }

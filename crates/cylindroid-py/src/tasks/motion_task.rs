@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use super::custom::Raised;
 use super::description::{Description, Named, moving_target};
 use crate::arrays::Numbers;
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument};
 
 /// A task of a `TaskServo` or a goal of `Mechanism.ik`: `FrameTask`, `RelativeFrameTask`, `CenterOfMassTask`, `GazeTask`,
@@ -374,14 +375,14 @@ impl PyPostureTask {
     #[pyo3(signature = (q, *, name = None, weight = None, gain = None, tolerance_position = None,
         tolerance_orientation = None))]
     fn new(
-        q: Numbers<'_>,
+        q: Coordinates<'_>,
         #[pyo3(from_py_with = argument)] name: Option<String>,
         #[pyo3(from_py_with = argument)] weight: Option<f64>,
         #[pyo3(from_py_with = argument)] gain: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_position: Option<f64>,
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
     ) -> Result<PyClassInitializer<Self>> {
-        let description = Description::Posture { q: q.vector("q")?.to_vec() };
+        let description = Description::Posture { q: q.places("q")?.to_vec() };
         let tolerance = (tolerance_position, tolerance_orientation);
         let common = Common { name, weight, gain, tolerance, ..Common::default() };
         let base = PyMotionTask::new(description, "posture", common);

@@ -12,6 +12,7 @@ use super::description::retarget;
 use super::{PyCollisionAvoidance, PyHalfSpace, PyMotionTask, PyTaskReport};
 use crate::arrays::{self, Array, Numbers};
 use crate::collision::{PyCollisionModel, PyDistances, in_use};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 use crate::options;
@@ -264,7 +265,7 @@ impl PyTaskServo {
     fn step<'py>(
         &self,
         py: Python<'py>,
-        q: Numbers<'py>,
+        q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] targets: Option<Bound<'py, PyDict>>,
     ) -> Result<Array<'py>> {
         let running = &mut *self.lock()?;
@@ -281,8 +282,8 @@ impl PyTaskServo {
             }
             Ok(())
         };
+        let q = q.vector(running.servo.mechanism(), "q")?;
         exchange(running)?;
-        let q = q.vector("q")?;
         match running.step(py, q) {
             Ok(reports) => running.last = Some((q.to_vec(), reports)),
             Err(error) => {
@@ -309,8 +310,9 @@ impl PyTaskServo {
     /// ------
     /// DimensionError, NotFiniteError
     #[pyo3(signature = (q))]
-    fn advance<'py>(&self, py: Python<'py>, q: Numbers<'py>) -> Result<Array<'py>> {
-        let (q, servo) = (q.vector("q")?, &self.lock()?.servo);
+    fn advance<'py>(&self, py: Python<'py>, q: Coordinates<'py>) -> Result<Array<'py>> {
+        let servo = &self.lock()?.servo;
+        let q = q.vector(servo.mechanism(), "q")?;
         servo.mechanism().check_q("q", q)?;
         let mut next = q.to_vec();
         servo.advance(&mut next);
