@@ -4,9 +4,9 @@ import type { Session } from "./session";
 
 type Moment = { frame: string; q: number[]; target: Pose };
 
-/** What moves the robot or its target; a drag or a held key sends many of one kind. */
+/** What moves the robot or its target; a drag or a held key sends many of one kind, which are one step. */
 const MOVES: readonly ToServer["type"][] = ["joint", "configuration", "target", "twist", "frame", "null_space", "reset"];
-/** Messages of one kind belong together while they come closer than this (ms). */
+/** Messages of one kind are one step while a button is held, or while they come closer than this (ms). */
 const PAUSE = 700;
 const MOST = 200;
 
@@ -15,10 +15,14 @@ export class History {
   private readonly future: Moment[] = [];
   private kind = "";
   private last = -Infinity;
+  private held = false;
   private own = false;
 
   constructor(private readonly session: Session, private readonly changed: (undo: boolean, redo: boolean) => void) {
     session.on("sending", (message) => this.sending(message));
+    // Before the press is handled: it begins something new.
+    addEventListener("pointerdown", () => this.press(true), true);
+    for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => this.press(false), true);
   }
 
   undo(): void {
@@ -35,11 +39,17 @@ export class History {
     this.forget();
   }
 
+  private press(held: boolean): void {
+    this.held = held;
+    if (held) this.kind = "";
+    else this.last = performance.now();
+  }
+
   private sending(message: ToServer): void {
     if (this.own || !MOVES.includes(message.type)) return;
     const now = performance.now();
     const kind = "name" in message ? `${message.type} ${message.name}` : message.type;
-    const goesOn = kind === this.kind && now - this.last < PAUSE;
+    const goesOn = kind === this.kind && (this.held || now - this.last < PAUSE);
     [this.kind, this.last] = [kind, now];
     const moment = this.now();
     if (goesOn || !moment) return;

@@ -78,6 +78,41 @@ test("a drag is one step of the history, and closed loops come back closed", () 
     assert.ok((await state(page)).closure_error?.closed);
   }));
 
+test("two strokes on a slider are two steps however fast, a slow one is one", () =>
+  visit(["panda"], async (page) => {
+    const before = await moment(page);
+    const box = await page.locator('[data-joint="panda_joint1"]').boundingBox();
+    if (!box) throw new Error("no slider");
+    const at = (/** @type {number} */ share) => /** @type {const} */ ([box.x + share * box.width, box.y + box.height / 2]);
+    await page.mouse.move(...at(0.5));
+    await page.mouse.down();
+    await page.mouse.move(...at(0.51));
+    await page.waitForTimeout(900);
+    await page.mouse.move(...at(0.52));
+    await page.mouse.up();
+    await untilSlider(page);
+    const first = await moment(page);
+    await page.mouse.down();
+    await page.mouse.move(...at(0.54));
+    await page.mouse.up();
+    await until(page, `state.q[0] > ${first.q[0]} + 0.05`);
+    const undo = page.getByRole("button", { name: /^Undo/ });
+    await undo.click();
+    await untilNear(page, "state.q", first.q, 1e-12);
+    await undo.click();
+    await untilBack(page, before);
+  }));
+
+/**
+ * Waits until the robot is where the first slider is.
+ * @param {import("playwright-core").Page} page
+ */
+async function untilSlider(page) {
+  const value = Number(await page.locator('[data-joint="panda_joint1"]').inputValue());
+  assert.ok(value > 0.05);
+  await untilNear(page, "[state.q[0]]", [value], 1e-9);
+}
+
 /**
  * Where points are seen, from -1 to 1.
  * @param {import("playwright-core").Page} page

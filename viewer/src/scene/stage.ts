@@ -117,9 +117,11 @@ export class Stage {
     const { camera, parallel } = this;
     const high = camera.position.distanceTo(this.orbit.target) * Math.tan((camera.fov * Math.PI) / 360);
     [parallel.top, parallel.bottom, parallel.right, parallel.left] = [high, -high, high * camera.aspect, -high * camera.aspect];
-    [parallel.near, parallel.far] = [-camera.far, camera.far];
-    parallel.position.copy(camera.position);
+    // From so far behind that nothing is behind it: rays of the pointer begin there.
+    [parallel.near, parallel.far] = [0, 2 * camera.far];
     parallel.quaternion.copy(camera.quaternion);
+    parallel.position.copy(camera.position);
+    parallel.translateZ(camera.far);
     parallel.updateProjectionMatrix();
     parallel.updateMatrixWorld();
   }
