@@ -103,6 +103,21 @@ def test_a_dead_worker_leaves_a_folder_to_resume(whole, tmp_path):
     assert checksums(tmp_path) == whole
 
 
+def test_an_interrupt_keeps_finished_parts(whole, tmp_path):
+    def interrupted(q, names):
+        if len(q) < 65_536:
+            raise KeyboardInterrupt
+        return abs(q).sum(1)
+
+    columns = {"bend": cy.SweepColumn(interrupted, "rad", "1")}
+    with concurrent.futures.ThreadPoolExecutor(1) as engine:
+        with pytest.raises(KeyboardInterrupt):
+            cy.sweep(**SWEEP | {"columns": columns}, out=tmp_path, engine=engine)
+    again = cy.sweep(**SWEEP, out=tmp_path, resume=True)
+    assert again.computed == ROWS - 2 * 65_536
+    assert checksums(tmp_path) == whole
+
+
 def test_a_worker_with_another_model_is_refused(tmp_path):
     """The file of the model has changed between the driver and the worker."""
     path = tmp_path / "arm.toml"

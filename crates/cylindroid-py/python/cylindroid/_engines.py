@@ -302,7 +302,8 @@ def _finished(
                 return
             # A limit, so that Ctrl-C is noticed.
             done, _ = concurrent.futures.wait(pending, 1.0, concurrent.futures.FIRST_COMPLETED)
-            for future in done:
+            # Finished parts first, so that an error of another one does not lose them.
+            for future in sorted(done, key=lambda future: future.exception() is not None):
                 yield pending.pop(future), workers.result(future)
     finally:
         for future in pending:
