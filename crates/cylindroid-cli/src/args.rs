@@ -8,6 +8,7 @@ mod ik;
 pub(crate) mod inverses;
 mod map;
 mod move_to;
+mod optimise;
 mod screws;
 mod shared;
 mod sweep;
@@ -24,9 +25,10 @@ pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs, TargetArgs, TaskAxes,
 };
 
+pub(crate) use optimise::OptimiseArgs;
 pub(crate) use screws::ScrewsArgs;
 pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs, ModelArgs};
-pub(crate) use sweep::SweepArgs;
+pub(crate) use sweep::{AxisArg, Count, SweepArgs};
 pub(crate) use tasks::{FrameTaskArg, TasksArgs};
 pub(crate) use view::ViewArgs;
 
@@ -110,6 +112,9 @@ pub(crate) enum Command {
     /// Quantities of millions of configurations: samples, grids or files, into Parquet
     #[command(long_about = sweep::ABOUT, after_long_help = sweep::EXAMPLES)]
     Sweep(Box<SweepArgs>),
+    /// Optimal designs: parameters of a mechanism file for the best indices, and their trade-offs
+    #[command(long_about = optimise::ABOUT, after_long_help = optimise::EXAMPLES)]
+    Optimise(Box<OptimiseArgs>),
     /// The workspace in the platform's coordinates, per working mode, with singularity loci
     #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
     Map(Box<MapArgs>),

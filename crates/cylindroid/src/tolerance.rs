@@ -433,6 +433,14 @@ pub const SHARE_FOUND: f64 = 1e-12;
 /// point a millimetre away changes [-].
 pub const SAME_RATES: f64 = 1e-9;
 
+/// A new simplex that improves an index by less than this share of it ends its refinement [-]: a
+/// thousand roundings, since an index has the error of its singular values.
+pub const OPTIMUM_IMPROVED: f64 = 1e-12;
+
+/// A parameter of an optimal design nearer than this to an end of its range, as a share of the range,
+/// is tried there [-]: where an index is flat, its roundings hide the root of them.
+pub const OPTIMUM_AT_END: f64 = 1e-6;
+
 /// The axes of a closing universal joint line up where the sine of their angle is below this [-]:
 /// what it holds is then for the analysis of one configuration to say.
 pub const CROSSED_AXES: f64 = 1e-6;

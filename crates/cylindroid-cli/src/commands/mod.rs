@@ -1,15 +1,18 @@
 //! One file per command: arguments in, text or JSON out, an exit code.
 
 pub(crate) mod closed;
+mod configurations;
 mod distance;
 mod fk;
 mod ik;
 pub(crate) mod info;
+mod interrupt;
 pub(crate) mod inverse_selection;
 mod jacobian;
 mod map;
 mod models;
 pub(crate) mod move_to;
+mod optimise;
 pub(crate) mod screws;
 pub(crate) mod shared;
 mod sweep;
@@ -40,6 +43,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Statics(args) => closed::statics::run(args, style, out),
         Command::Grasp(args) => closed::grasp::run(args, style, out),
         Command::Sweep(args) => sweep::run(args, style, out),
+        Command::Optimise(args) => optimise::run(args, style, out),
         Command::Map(args) => map::run(args, style, out),
         Command::View(args) => view::run(args, style, out),
     }

@@ -178,6 +178,11 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             let some = ["youbot", "--samples", "50"];
             vec![with(&some, &["--quantities", "pose,gibson_hunt"]), with(&some, &["--out", FILE])]
         }
+        "optimise" => {
+            let vary = ["--vary", "crank=0.3:0.8", "--minimise", "anisotropy", "--designs", "9"];
+            let workspace = ["--over", "point_x=0:0.1:2", "--starts", "1", "--evaluations", "20"];
+            vec![with(&[DESIGNS], &[vary, workspace].concat())]
+        }
         // A limit that ends a mode has a key of its own.
         "map" => vec![
             vec!["five-bar", "--over", "x=0:2:5", "--over", "y=0.5:2.5:5"],

@@ -14,6 +14,7 @@ mod inverses;
 mod map;
 mod measured;
 mod motion;
+mod optimise;
 mod parameters;
 mod pictures;
 mod screws;

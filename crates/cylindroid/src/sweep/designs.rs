@@ -118,7 +118,7 @@ impl DesignSpace {
     }
 
     /// Number of designs.
-    fn checked_count(&self, model: &ParametricModel) -> Result<u64> {
+    pub(super) fn checked_count(&self, model: &ParametricModel) -> Result<u64> {
         let option = self.option();
         let refuse = |value: &str, reason: String| {
             Err(Error::InvalidOption { option, value: value.to_owned(), reason })
@@ -161,7 +161,7 @@ impl DesignSpace {
     }
 
     /// The values of a design, in the order of the names.
-    fn values(&self, design: u64) -> Vec<f64> {
+    pub(super) fn values(&self, design: u64) -> Vec<f64> {
         match self {
             Self::Grid(axes) => {
                 let mut left = design;
@@ -194,9 +194,9 @@ pub(super) struct Designs {
     pub(super) count: u64,
     options: SweepOptions,
     /// Configurations of each design.
-    each: u64,
+    pub(super) each: u64,
     /// Columns of one design.
-    columns: Vec<Column>,
+    pub(super) own_columns: Vec<Column>,
 }
 
 impl Designs {
@@ -208,7 +208,7 @@ impl Designs {
         each: u64,
     ) -> Result<Self> {
         let count = space.checked_count(model)?;
-        Ok(Self { model: model.clone(), space, count, options, each, columns })
+        Ok(Self { model: model.clone(), space, count, options, each, own_columns: columns })
     }
 
     /// All columns: the design and its parameters before those of the configurations.
@@ -218,23 +218,17 @@ impl Designs {
             Column::parameter(name, unit.map_or("", |unit| unit))
         });
         let (index, rest) =
-            self.columns.split_first().map_or((None, &[][..]), |(i, r)| (Some(i), r));
+            self.own_columns.split_first().map_or((None, &[][..]), |(i, r)| (Some(i), r));
         let design = Column::count("design", "place of the design, from 0");
         let valid = Column::count("design_valid", "1 if the design has a mechanism, otherwise 0");
         let own = index.cloned().into_iter().chain(once(design)).chain(once(valid));
         own.chain(parameters).chain(rest.iter().cloned()).collect()
     }
 
-    /// The mechanism of a design.
-    pub(super) fn mechanism(&self, design: u64) -> Result<Mechanism> {
-        let values = self.space.values(design);
-        let pairs: Vec<(&str, f64)> = self.space.names().into_iter().zip(values).collect();
-        self.model.with(&pairs)
-    }
-
-    /// What computes the rows of a design; an error for one without a mechanism.
-    fn prepared(&self, design: u64) -> Result<(Configurations, Evaluator)> {
-        let (own, nominal) = (self.mechanism(design)?, self.model.nominal());
+    /// What computes the rows of a design, which has these values of parameters; an error for one
+    /// without a mechanism.
+    pub(super) fn prepared(&self, values: &[(&str, f64)]) -> Result<(Configurations, Evaluator)> {
+        let (own, nominal) = (self.model.with(values)?, self.model.nominal());
         let names =
             |m: &Mechanism| m.coordinates().iter().map(|c| c.name.clone()).collect::<Vec<_>>();
         if names(&own) != names(nominal) {
@@ -266,20 +260,22 @@ impl Designs {
             let first = design * self.each;
             let end = rows.end.min(first + self.each);
             let count = usize::try_from(end - start).unwrap_or(0);
-            let prepared = self.prepared(design);
+            let values = self.space.values(design);
+            let pairs: Vec<(&str, f64)> =
+                self.space.names().into_iter().zip(values.iter().copied()).collect();
+            let prepared = self.prepared(&pairs);
             let mut own = match &prepared {
                 Ok((configurations, evaluator)) => {
-                    evaluator.run(configurations, &self.columns, start - first..end - first)?
+                    evaluator.run(configurations, &self.own_columns, start - first..end - first)?
                 }
-                Err(_) => self.columns.iter().map(|c| c.missing(count)).collect(),
+                Err(_) => self.own_columns.iter().map(|c| c.missing(count)).collect(),
             };
             let mut before = vec![
                 Values::Counts((start..end).collect()),
                 Values::Counts(vec![design; count]),
                 Values::Counts(vec![u64::from(prepared.is_ok()); count]),
             ];
-            let values = self.space.values(design).into_iter();
-            before.extend(values.map(|x| Values::Numbers(vec![x; count])));
+            before.extend(values.into_iter().map(|x| Values::Numbers(vec![x; count])));
             let all = before.into_iter().chain(own.drain(1..));
             out.iter_mut().zip(all).for_each(|(column, more)| column.append(more));
             start = end;

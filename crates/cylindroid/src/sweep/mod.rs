@@ -4,8 +4,8 @@
 //! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
 //! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder`
-//! (on disk, stopped and resumed), `shared_folder` (written by several processes). `map` goes its own way: the workspace in the coordinates of the
-//! platform.
+//! (on disk, stopped and resumed), `shared_folder` (written by several processes). Two go their own
+//! way: `optimise` (the best designs) and `map` (the workspace in the coordinates of the platform).
 //!
 //! ```
 //! use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions};
@@ -30,6 +30,7 @@ mod folder;
 mod job;
 mod manifest;
 mod map;
+mod optimise;
 mod options;
 mod own_columns;
 mod parquet_file;
@@ -49,6 +50,10 @@ pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
 pub use manifest::Part;
 pub use map::{Locus, LocusKind, Map, MapOptions, WorkingMode};
+pub use optimise::{
+    DesignObjective, OptimalDesign, Optimisation, OptimisationOptions, Optimum, Refinement, Sense,
+    Statistic,
+};
 pub use options::{SweepOptions, VelocityMetric};
 pub use own_columns::{ColumnFunction, OwnColumn};
 pub use parquet_input::parquet_configurations;

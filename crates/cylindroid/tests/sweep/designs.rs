@@ -12,7 +12,7 @@ use cylindroid::{Error, ParametricModel, Result};
 
 use crate::bits;
 
-const ARM: &str = r#"
+pub(crate) const ARM: &str = r#"
 dimension = 2
 reference = "hand"
 reference_point = ["a + b", 0]
@@ -45,7 +45,7 @@ pub(crate) fn five_bar() -> ParametricModel {
     ParametricModel::read(path.to_str().unwrap(), &[]).unwrap()
 }
 
-fn axis(name: &str, from: f64, to: f64, count: u64) -> Axis {
+pub(crate) fn axis(name: &str, from: f64, to: f64, count: u64) -> Axis {
     Axis { name: name.to_owned(), from, to, count }
 }
 
@@ -170,7 +170,7 @@ fn isotropic_five_bars_are_found() {
 
 /// Three slides along a cone about z, whose rods make the angle `bend` with them, and a platform that
 /// does not turn: an Orthoglide where rods and slides are perpendicular to one another.
-fn orthoglide() -> ParametricModel {
+pub(crate) fn orthoglide() -> ParametricModel {
     let mut text = String::from(
         "reference = 'platform'\nreference_point = [0, 0, 0]\n[parameters]\n\
          cone = { value = 0.9, lower = 0.1, upper = 1.5, unit = 'rad' }\n\

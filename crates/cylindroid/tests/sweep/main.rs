@@ -9,6 +9,7 @@
 
 mod designs;
 mod folder;
+mod optimise;
 mod own_columns;
 mod parts;
 mod pinocchio;

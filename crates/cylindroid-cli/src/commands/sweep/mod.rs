@@ -1,7 +1,6 @@
 //! `sweep`: quantities of millions of configurations.
 
 mod csv_file;
-mod interrupt;
 mod report;
 
 use std::cell::Cell;
@@ -10,28 +9,25 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use cylindroid::Error;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
-    Axis, AxisKinds, DesignSpace, ParameterRange, Progress, Quantity, Source, Sweep, SweepOptions,
-    WriteOptions,
+    Axis, DesignSpace, ParameterRange, Progress, Quantity, Sweep, SweepOptions, WriteOptions,
 };
-use cylindroid::{Error, Mechanism};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use self::interrupt::Interrupt;
 use self::report::{Head, Outcome};
 use crate::args::SweepArgs;
+use crate::commands::configurations::Chosen;
+use crate::commands::interrupt::{INTERRUPTED, Interrupt};
 use crate::commands::shared::{Style, end_effector, load, parametric};
-use crate::number_file;
 use crate::output;
-use crate::values::Joints;
-
-/// Exit code after Ctrl-C, as of a shell: 128 and the number of the signal.
-const INTERRUPTED: u8 = 130;
 
 pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     let robot = load(&args.model, &[])?;
-    let (source, space) = (source(&robot, args)?, designs(&robot, args)?);
+    let chosen = Chosen::from(args);
+    let source = chosen.source(&robot)?;
+    let space = designs(chosen.parameters(&robot)?, args)?;
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
     let quantities = if args.quantities.is_empty() {
@@ -99,43 +95,8 @@ fn is_csv(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
-/// The configurations, of each design if there are designs.
-fn source(robot: &Mechanism, args: &SweepArgs) -> cylindroid::Result<Source> {
-    let kinds = AxisKinds::of(axes(args), robot)?;
-    let chosen = match (&args.samples, &args.configurations) {
-        (None, None) => None,
-        (Some(_), _) => Some("samples"),
-        _ => Some("configurations"),
-    };
-    if let (Some(axis), Some(chosen)) = (kinds.coordinates.first(), chosen) {
-        return Err(Error::InvalidOption {
-            option: "--over",
-            value: axis.name.clone(),
-            reason: format!("a coordinate is an axis or one of --{chosen}, not both"),
-        });
-    }
-    if let Some(path) = &args.configurations {
-        let names = output::joint_names(robot);
-        return Ok(Source::Configurations(number_file::configurations(path, &names)?));
-    }
-    if let Some(count) = args.samples {
-        return Ok(Source::Samples { count: count.0, seed: args.seed });
-    }
-    let rest = args.q.configuration(robot, false)?;
-    Ok(match kinds.coordinates {
-        axes if !axes.is_empty() => Source::Grid { axes, rest },
-        _ if args.q == Joints::Home => Source::Home,
-        _ => Source::Configurations(rest),
-    })
-}
-
-fn axes(args: &SweepArgs) -> Vec<Axis> {
-    args.over.iter().map(|axis| axis.0.clone()).collect()
-}
-
 /// The designs, if parameters vary.
-fn designs(robot: &Mechanism, args: &SweepArgs) -> cylindroid::Result<Option<DesignSpace>> {
-    let parameters = AxisKinds::of(axes(args), robot)?.parameters;
+fn designs(parameters: Vec<Axis>, args: &SweepArgs) -> cylindroid::Result<Option<DesignSpace>> {
     let ranges: Vec<ParameterRange> = args.vary.iter().map(|range| range.0.clone()).collect();
     match (parameters.first(), args.designs) {
         (None, None) => Ok(None),

@@ -8,6 +8,7 @@ use cylindroid::sweep::{Column, Source, Statistics, Summary, Sweep};
 use serde::Serialize;
 
 use crate::args::SweepArgs;
+use crate::commands::configurations::Chosen;
 use crate::output::{self, Align, number};
 
 /// What is swept.
@@ -35,16 +36,7 @@ impl<'a> Head<'a> {
     ) -> Self {
         let all = sweep.rows();
         let rows = all / sweep.designs().unwrap_or(1).max(1);
-        let configurations = match source {
-            Source::Samples { seed, .. } => format!("{rows} samples, seed {seed}"),
-            Source::Grid { axes, .. } => {
-                let counts: Vec<String> = axes.iter().map(|a| a.count.to_string()).collect();
-                format!("grid of {}", counts.join(" x "))
-            }
-            Source::Home => "home".to_owned(),
-            _ if args.configurations.is_none() => "that of --q".to_owned(),
-            _ => format!("{rows} of a file"),
-        };
+        let configurations = Chosen::from(args).words(source, rows);
         let configurations = match sweep.designs() {
             None => configurations,
             Some(designs) => format!("{configurations} of {designs} designs"),

@@ -3,12 +3,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Exit code after Ctrl-C, as of a shell: 128 and the number of the signal.
+pub(crate) const INTERRUPTED: u8 = 130;
+
 /// True from the first Ctrl-C on.
-pub(super) struct Interrupt(Arc<AtomicBool>);
+pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// Where signals cannot be waited for, Ctrl-C ends the process: finished parts are kept too.
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let came = Arc::new(AtomicBool::new(false));
         let own = Arc::clone(&came);
         let (sender, receiver) = std::sync::mpsc::channel();
@@ -36,7 +39,7 @@ impl Interrupt {
         Self(came)
     }
 
-    pub(super) fn came(&self) -> bool {
+    pub(crate) fn came(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }

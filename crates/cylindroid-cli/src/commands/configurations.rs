@@ -1,0 +1,89 @@
+//! The configurations of `sweep` and `optimise`.
+
+use std::path::PathBuf;
+
+use cylindroid::sweep::{Axis, AxisKinds, Source};
+use cylindroid::{Error, Mechanism};
+
+use crate::args::{AxisArg, Count, OptimiseArgs, SweepArgs};
+use crate::number_file;
+use crate::output;
+use crate::values::Joints;
+
+/// The arguments that choose configurations.
+pub(crate) struct Chosen<'a> {
+    pub(crate) over: &'a [AxisArg],
+    pub(crate) samples: Option<Count>,
+    pub(crate) seed: u64,
+    pub(crate) configurations: Option<&'a PathBuf>,
+    pub(crate) q: &'a Joints,
+}
+
+impl<'a> From<&'a SweepArgs> for Chosen<'a> {
+    fn from(args: &'a SweepArgs) -> Self {
+        let SweepArgs { over, samples, seed, configurations, q, .. } = args;
+        Self { over, samples: *samples, seed: *seed, configurations: configurations.as_ref(), q }
+    }
+}
+
+impl<'a> From<&'a OptimiseArgs> for Chosen<'a> {
+    fn from(args: &'a OptimiseArgs) -> Self {
+        let OptimiseArgs { over, samples, seed, configurations, q, .. } = args;
+        Self { over, samples: *samples, seed: *seed, configurations: configurations.as_ref(), q }
+    }
+}
+
+impl Chosen<'_> {
+    fn kinds(&self, robot: &Mechanism) -> cylindroid::Result<AxisKinds> {
+        AxisKinds::of(self.over.iter().map(|axis| axis.0.clone()).collect(), robot)
+    }
+
+    /// The axes of parameters.
+    pub(crate) fn parameters(&self, robot: &Mechanism) -> cylindroid::Result<Vec<Axis>> {
+        Ok(self.kinds(robot)?.parameters)
+    }
+
+    /// The configurations, of each design if there are designs.
+    pub(crate) fn source(&self, robot: &Mechanism) -> cylindroid::Result<Source> {
+        let kinds = self.kinds(robot)?;
+        let chosen = match (&self.samples, &self.configurations) {
+            (None, None) => None,
+            (Some(_), _) => Some("samples"),
+            _ => Some("configurations"),
+        };
+        if let (Some(axis), Some(chosen)) = (kinds.coordinates.first(), chosen) {
+            return Err(Error::InvalidOption {
+                option: "--over",
+                value: axis.name.clone(),
+                reason: format!("a coordinate is an axis or one of --{chosen}, not both"),
+            });
+        }
+        if let Some(path) = self.configurations {
+            let names = output::joint_names(robot);
+            return Ok(Source::Configurations(number_file::configurations(path, &names)?));
+        }
+        if let Some(count) = self.samples {
+            return Ok(Source::Samples { count: count.0, seed: self.seed });
+        }
+        let rest = self.q.configuration(robot, false)?;
+        Ok(match kinds.coordinates {
+            axes if !axes.is_empty() => Source::Grid { axes, rest },
+            _ if *self.q == Joints::Home => Source::Home,
+            _ => Source::Configurations(rest),
+        })
+    }
+
+    /// The configurations in words; `rows` of them.
+    pub(crate) fn words(&self, source: &Source, rows: u64) -> String {
+        match source {
+            Source::Samples { seed, .. } => format!("{rows} samples, seed {seed}"),
+            Source::Grid { axes, .. } => {
+                let counts: Vec<String> = axes.iter().map(|a| a.count.to_string()).collect();
+                format!("grid of {}", counts.join(" x "))
+            }
+            Source::Home => "home".to_owned(),
+            _ if self.configurations.is_none() => "that of --q".to_owned(),
+            _ => format!("{rows} of a file"),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! `optimise`: designs with the best indices, and trade-offs.
+
+mod report;
+
+use std::io::Write;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use cylindroid::control::Task;
+use cylindroid::sweep::{DesignObjective, Optimisation, OptimisationOptions, Sense, SweepOptions};
+use indicatif::{ProgressBar, ProgressDrawTarget};
+
+use self::report::Report;
+use crate::args::OptimiseArgs;
+use crate::commands::configurations::Chosen;
+use crate::commands::interrupt::{INTERRUPTED, Interrupt};
+use crate::commands::shared::{Style, answer, end_effector, load, parametric};
+use crate::output;
+
+pub(crate) fn run(
+    args: &OptimiseArgs,
+    style: Style,
+    out: &mut dyn Write,
+) -> anyhow::Result<ExitCode> {
+    let robot = load(&args.model, &[])?;
+    let model = parametric(&args.model)?;
+    let chosen = Chosen::from(args);
+    let source = chosen.source(&robot)?;
+    let workspace = chosen.parameters(&robot)?;
+    let named = args.frame.frame.is_some() || args.frame.tool.is_some();
+    let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
+    let task = args.task.as_deref().map(|name| Task::named(name, &robot)).transpose()?;
+    let of = |names: &[String], sense: Sense| {
+        let own = names.iter().map(|name| DesignObjective::named(name, sense));
+        own.collect::<Result<Vec<_>, _>>()
+    };
+    let objectives =
+        [of(&args.minimise, Sense::Minimise)?, of(&args.maximise, Sense::Maximise)?].concat();
+    let options = OptimisationOptions {
+        ranges: args.vary.iter().map(|range| range.0.clone()).collect(),
+        objectives,
+        workspace: workspace.clone(),
+        designs: args.designs.0,
+        starts: usize::try_from(args.starts.0).unwrap_or(usize::MAX),
+        evaluations: args.evaluations.0,
+        seed: args.seed,
+        sweep: SweepOptions {
+            source: source.clone(),
+            end_effector: frame,
+            task,
+            metric: args.metric.metric(),
+            length: args.length,
+            ..SweepOptions::default()
+        },
+    };
+    let search = Optimisation::new(&model, options)?;
+    let interrupt = Interrupt::new();
+    let started = Instant::now();
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    bar.enable_steady_tick(Duration::from_millis(500));
+    let found = search.run(args.threads, |evaluated| {
+        bar.set_message(format!("{evaluated} designs"));
+        bar.set_position(evaluated);
+        !interrupt.came()
+    })?;
+    bar.finish_and_clear();
+    let Some(found) = found else {
+        writeln!(std::io::stderr(), "interrupted")?;
+        return Ok(ExitCode::from(INTERRUPTED));
+    };
+    let configurations = chosen.words(&source, search.configurations());
+    let seconds = started.elapsed().as_secs_f64();
+    let report = Report::of(&robot, (args, &search, &found), configurations, &workspace, seconds);
+    match style {
+        Style::Json => output::json(out, &report)?,
+        Style::Table => report.print(out)?,
+    }
+    Ok(answer(!found.designs.is_empty()))
+}
