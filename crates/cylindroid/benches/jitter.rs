@@ -225,7 +225,7 @@ fn panda_of_spheres(steps: usize) -> Vec<u128> {
 fn walker() -> Mechanism {
     let mut builder = Mechanism::builder("walker");
     let limits =
-        Limits { lower: -2.5, upper: 2.5, velocity: 10.0, acceleration: 200.0, effort: 1.0 };
+        Limits { lower: -2.5, upper: 2.5, velocity: 10.0, acceleration: 200.0, ..Limits::NONE };
     let mut add = |name: &str, kind: JointKind, parent: &str, axis: Vec3, at: Vec3| {
         let inertial = Inertial {
             mass: 1.5,

@@ -106,6 +106,7 @@ impl FlatMechanism {
         }
         own.velocity = own.velocity.min(spec.limits.velocity / multiplier.abs());
         own.acceleration = own.acceleration.min(spec.limits.acceleration / multiplier.abs());
+        own.jerk = own.jerk.min(spec.limits.jerk / multiplier.abs());
         clash
     }
 

@@ -118,7 +118,7 @@ impl JointKind {
     }
 }
 
-/// Limits of position, velocity, acceleration and effort. Infinite if unknown.
+/// Limits of position, velocity, acceleration, jerk and effort. Infinite if unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Smallest position [rad or m]; spherical and free joints have none.
@@ -129,6 +129,8 @@ pub struct Limits {
     pub velocity: f64,
     /// Largest acceleration [rad/s^2 or m/s^2].
     pub acceleration: f64,
+    /// Largest jerk [rad/s^3 or m/s^3].
+    pub jerk: f64,
     /// Largest torque or force [N m or N].
     pub effort: f64,
 }
@@ -151,6 +153,7 @@ impl Limits {
         upper: f64::INFINITY,
         velocity: f64::INFINITY,
         acceleration: f64::INFINITY,
+        jerk: f64::INFINITY,
         effort: f64::INFINITY,
     };
 

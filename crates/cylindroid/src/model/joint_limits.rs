@@ -1,7 +1,7 @@
 //! Limits of joints in place of those of the model, by name.
 //!
-//! Valid    positions are narrowed only: the file knows where a joint stops. Velocities, accelerations
-//!          and efforts may also be larger than those of the model, and given where it has none
+//! Valid    positions are narrowed only: the file knows where a joint stops. Velocities, accelerations,
+//!          jerks and efforts may also be larger than those of the model, and given where it has none
 //! Why so   MJCF has no limits of velocities and accelerations, URDF none of accelerations, and an
 //!          application rarely permits what the maker does
 //! Checked  tests/formats/joint_limits.rs
@@ -25,13 +25,16 @@ pub struct JointLimits {
     pub velocity: Option<f64>,
     /// Largest acceleration [rad/s^2 or m/s^2].
     pub acceleration: Option<f64>,
+    /// Largest jerk [rad/s^3 or m/s^3].
+    pub jerk: Option<f64>,
     /// Largest torque or force [N m or N].
     pub effort: Option<f64>,
 }
 
 impl JointLimits {
     /// The names of the limits, in the order of the fields.
-    pub const NAMES: [&'static str; 5] = ["lower", "upper", "velocity", "acceleration", "effort"];
+    pub const NAMES: [&'static str; 6] =
+        ["lower", "upper", "velocity", "acceleration", "jerk", "effort"];
 
     /// The limit of this name; infinite for no limit.
     ///
@@ -43,6 +46,7 @@ impl JointLimits {
             "upper" => &mut self.upper,
             "velocity" => &mut self.velocity,
             "acceleration" => &mut self.acceleration,
+            "jerk" => &mut self.jerk,
             "effort" => &mut self.effort,
             _ => return Err(Error::unknown("limit", name, Self::NAMES)),
         };
@@ -56,6 +60,7 @@ impl JointLimits {
         set(&mut limits.upper, self.upper);
         set(&mut limits.velocity, self.velocity);
         set(&mut limits.acceleration, self.acceleration);
+        set(&mut limits.jerk, self.jerk);
         set(&mut limits.effort, self.effort);
     }
 }
@@ -63,7 +68,7 @@ impl JointLimits {
 impl Mechanism {
     /// The same mechanism with other limits of joints of the tree, of their coordinates, or of loop
     /// joints. Positions can only be narrowed; the home configuration of a tree is moved within
-    /// them. Joints that follow another one keep their velocity and acceleration limits.
+    /// them. Joints that follow another one keep their velocity, acceleration and jerk limits.
     ///
     /// ```
     /// use cylindroid::model::JointLimits;
@@ -158,6 +163,7 @@ impl Data {
                 for c in &mut coordinates[follower.coordinates.clone()] {
                     c.limits.velocity = c.limits.velocity.min(limits.velocity / ratio);
                     c.limits.acceleration = c.limits.acceleration.min(limits.acceleration / ratio);
+                    c.limits.jerk = c.limits.jerk.min(limits.jerk / ratio);
                 }
             }
         }

@@ -134,7 +134,7 @@ pub(super) fn fault(
         return Some(format!("the pitch of joint '{name}' {fault}"));
     }
     let l = limits;
-    let all = [l.lower, l.upper, l.velocity, l.acceleration, l.effort];
+    let all = [l.lower, l.upper, l.velocity, l.acceleration, l.jerk, l.effort];
     if let Some(fault) = magnitude::bound_fault(&all) {
         return Some(format!("a limit of joint '{name}' {fault}; for no limit use infinity"));
     }
@@ -162,14 +162,17 @@ pub(super) fn fault(
             l.upper
         ));
     }
-    for (what, value) in
-        [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)]
-    {
+    let sizes = [("velocity", l.velocity), ("acceleration", l.acceleration), ("effort", l.effort)];
+    for (what, value) in sizes {
         if value.is_nan() || value < 0.0 {
             return Some(format!(
                 "joint '{name}' has {what} limit {value}; it must not be negative"
             ));
         }
+    }
+    // Zero would keep a moving joint from ever stopping.
+    if !(l.jerk > 0.0) {
+        return Some(format!("joint '{name}' has jerk limit {}; it must be positive", l.jerk));
     }
     None
 }

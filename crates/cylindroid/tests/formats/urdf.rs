@@ -25,7 +25,9 @@ fn names_limits_and_order_come_from_the_file() {
     assert_eq!(names, ["lift", "elbow", "finger_left"]);
     let elbow = m.coordinates()[1].limits;
     let acceleration = f64::INFINITY;
-    let expected = Limits { lower: -2.0, upper: 1.5, velocity: 3.0, acceleration, effort: 20.0 };
+    let jerk = f64::INFINITY;
+    let expected =
+        Limits { lower: -2.0, upper: 1.5, velocity: 3.0, acceleration, jerk, effort: 20.0 };
     assert_eq!(elbow, expected);
     assert_eq!(m.frame_of(m.tool()).name, "hand");
     assert!(m.joints().iter().filter(|j| j.mimic.is_none()).all(|j| j.actuated));

@@ -72,7 +72,7 @@ fn limits(random: &mut Random) -> Limits {
         upper: random.power(-1.0, 0.6),
         velocity: random.power(-1.0, 1.0),
         acceleration: random.power(-0.5, 2.5),
-        effort: 1.0,
+        ..Limits::NONE
     };
     match random.below(24) {
         0 => l.lower = f64::NEG_INFINITY,
@@ -113,7 +113,7 @@ pub(crate) fn robot(random: &mut Random, with_shapes: bool) -> Mechanism {
         };
         let own = if with_shapes {
             let (velocity, acceleration) = (random.power(-0.5, 0.7), random.power(0.0, 2.0));
-            Limits { lower: -2.8, upper: 2.8, velocity, acceleration, effort: 1.0 }
+            Limits { lower: -2.8, upper: 2.8, velocity, acceleration, ..Limits::NONE }
         } else {
             limits(random)
         };

@@ -6,7 +6,7 @@ use cylindroid::control::{
     TaskServoOptions,
 };
 use cylindroid::inverse::Method;
-use cylindroid::model::Geometry;
+use cylindroid::model::{Geometry, JointLimits};
 use cylindroid::{Mechanism, Pose, Servo, ServoOptions};
 
 use crate::robots::{ClampTo, Random, of_catalogue, robot};
@@ -23,19 +23,27 @@ const LOOK: u64 = 5;
 pub(crate) enum Kind {
     Catalogue,
     Random,
+    Jerks,
     Closed,
     Tasks,
     Distances,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 5] =
-        [Self::Catalogue, Self::Random, Self::Closed, Self::Tasks, Self::Distances];
+    pub(crate) const ALL: [Self; 6] = [
+        Self::Catalogue,
+        Self::Random,
+        Self::Jerks,
+        Self::Closed,
+        Self::Tasks,
+        Self::Distances,
+    ];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Catalogue => "robots of the catalogue",
             Self::Random => "random robots",
+            Self::Jerks => "limits of the jerk",
             Self::Closed => "closed chains",
             Self::Tasks => "many tasks",
             Self::Distances => "distances",
@@ -45,7 +53,8 @@ impl Kind {
     pub(crate) fn of(seed: u64) -> Self {
         match seed % 20 {
             0..6 => Self::Catalogue,
-            6..15 => Self::Random,
+            6..12 => Self::Random,
+            12..15 => Self::Jerks,
             15 => Self::Closed,
             16..18 => Self::Tasks,
             _ => Self::Distances,
@@ -61,6 +70,16 @@ pub(crate) fn run(kind: Kind, seed: u64) -> Tally {
             one_task(&robot, &mut random)
         }
         Kind::Random => one_task(&robot(&mut random, false), &mut random),
+        Kind::Jerks => {
+            let way = random.below(4);
+            let robot = robot(&mut random, way == 3);
+            let robot = with_jerks(&robot, &mut random);
+            match way {
+                0 | 1 => one_task(&robot, &mut random),
+                2 => many_tasks(&robot, &mut random),
+                _ => distances(&robot, &mut random),
+            }
+        }
         Kind::Tasks if random.once_in(5) => closed_tasks(&mut random),
         Kind::Tasks => many_tasks(&robot(&mut random, false), &mut random),
         Kind::Distances => distances(&robot(&mut random, true), &mut random),
@@ -68,6 +87,20 @@ pub(crate) fn run(kind: Kind, seed: u64) -> Tally {
     tally.rounds = 1;
     tally.violations.iter_mut().for_each(|v| *v = format!("round {seed}, {v}"));
     tally
+}
+
+/// The same robot with limits of all jerks.
+fn with_jerks(robot: &Mechanism, random: &mut Random) -> Mechanism {
+    let limits = robot.coordinates().iter().map(|c| {
+        let jerk = Some(random.power(0.0, 4.0));
+        (c.name.as_str(), JointLimits { jerk, ..JointLimits::default() })
+    });
+    robot.with_limits(&limits.collect::<Vec<_>>()).unwrap()
+}
+
+/// A push changes velocities at once, which no jerk limit permits.
+fn takes_pushes(robot: &Mechanism) -> bool {
+    robot.coordinates().iter().all(|c| c.limits.jerk == f64::INFINITY)
 }
 
 /// Something moves the robot: anywhere within the limits, or a little.
@@ -126,7 +159,7 @@ fn one_task(robot: &Mechanism, random: &mut Random) -> Tally {
         if random.once_in(150) {
             goal = target(robot.state(&q).unwrap().pose(end_effector), random);
         }
-        if !closed && random.once_in(250) {
+        if !closed && random.once_in(250) && takes_pushes(robot) {
             push(robot, &mut q, random);
             watch.push();
             tally.pushes += 1;
@@ -256,7 +289,7 @@ fn task_servo(
     let robot = servo.mechanism().clone();
     let mut tally = Tally::default();
     // A push may put bodies into one another: none where distances are watched.
-    let pushes = servo.collision_model_mut().is_none();
+    let pushes = servo.collision_model_mut().is_none() && takes_pushes(&robot);
     for step in 0..STEPS {
         if pushes && random.once_in(250) {
             push(&robot, q, random);

@@ -61,6 +61,8 @@ pub(crate) struct Watch {
     names: Vec<String>,
     dt: f64,
     before: Vec<f64>,
+    /// The velocity before that.
+    earlier: Vec<f64>,
     /// True from a push until the joint could stop within its acceleration again.
     pushed: Vec<bool>,
 }
@@ -78,6 +80,7 @@ impl Watch {
             names: robot.coordinates().iter().map(|c| c.name.clone()).collect(),
             dt,
             before: vec![0.0; n],
+            earlier: vec![0.0; n],
             // A start near a limit is as good as a push: at rest it is not.
             pushed: vec![false; n],
         }
@@ -124,10 +127,15 @@ impl Watch {
             if excess > rounding && !self.pushed[i] {
                 return fail("acceleration", excess);
             }
+            let bend = (v - 2.0 * before + self.earlier[i]).abs() / self.dt;
+            let excess = bend - l.jerk * self.dt * (1.0 + 1e-9);
+            if excess > 4.0 * rounding / self.dt {
+                return fail("jerk", excess / self.dt);
+            }
             if self.pushed[i] && self.can_stop(i, v, y) {
                 self.pushed[i] = false;
             }
-            self.before[i] = v;
+            (self.earlier[i], self.before[i]) = (before, v);
         }
         Ok(at_limit)
     }

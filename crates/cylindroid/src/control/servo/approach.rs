@@ -3,7 +3,7 @@
 //! Formula  x = s K e + feed-forward, s = min(1, min_i v_i(|d_i|) / |r_i|) with d = J+ e the
 //!          remaining displacement of joint i, r = J+ K e the unbounded velocities, v_i(d) the
 //!          largest velocity from which `BRAKING` of its acceleration limit stops within d
-//!          (`limits.rs`)
+//!          and of its jerk limit stop within d (`stopping.rs`)
 //! Shapes   e, x: m; d, r: n          Units  d in rad or m, r in rad/s or m/s, s [-]
 //! Valid    any target; s = 1 for joints without acceleration limits, and for all joints near the
 //!          target (d < 2 A / K^2). One s for all joints keeps the path straight. J+ e is of first
@@ -12,11 +12,11 @@
 //!          then overshoots the target and oscillates
 //! Checked  tests/it/servo/steps.rs::weak_joints_arrive
 
-use super::limits::{stopping_distance_bound, stopping_velocity};
+use super::stopping::{jerk_limited_stopping_velocity, stopping_distance_bound};
 use crate::inverse::Method;
 use crate::model::Limits;
 
-/// Share of the acceleration limit reserved for braking [-].
+/// Share of the acceleration and jerk limits reserved for braking [-].
 const BRAKING: f64 = 0.8;
 
 /// The scale s of the feedback that lets every joint stop at its goal: `displacements` and
@@ -33,14 +33,14 @@ pub(super) fn scale(
         displacements.iter().zip(velocities).zip(columns).zip(limits)
     {
         let (way, rate) = ((way * scale).abs(), (rate * scale).abs());
-        let a = BRAKING * limit.acceleration;
+        let (a, jerk) = (BRAKING * limit.acceleration, BRAKING * limit.jerk);
         // For most joints an upper bound of the stopping distance suffices.
-        if way > stopping_distance_bound(rate, a, dt) {
+        if jerk == f64::INFINITY && way > stopping_distance_bound(rate, a, dt) {
             continue;
         }
         // A joint that cannot move is left to the saturation.
         if a > 0.0 && rate > 0.0 {
-            share = share.min(stopping_velocity(way, a, dt) / rate);
+            share = share.min(jerk_limited_stopping_velocity(way, a, jerk, dt) / rate);
         }
     }
     share

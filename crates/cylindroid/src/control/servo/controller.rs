@@ -27,7 +27,7 @@ use super::coupled::Coupled;
 use super::escape::Escape;
 use super::following::TargetFollower;
 use super::inertia_weights::InertiaWeights;
-use super::limits::BrakingMargin;
+use super::limits::{BrakingMargin, limits_of_servo};
 use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
 use super::options::ServoOptions;
 use super::plant::Predictor;
@@ -62,7 +62,7 @@ pub struct Servo {
     space: TaskSpace,
     limits: Vec<Limits>,
     braking_margins: Vec<BrakingMargin>,
-    /// True if any joint has an acceleration limit.
+    /// True if any joint has an acceleration or a jerk limit.
     accelerates: bool,
     /// Length of the chain after its first joint (m).
     length: f64,
@@ -100,6 +100,8 @@ pub struct Servo {
     approaches_type_ii: bool,
 
     rates: Vec<f64>,
+    /// Changes of the velocities in the last step, divided by its duration.
+    accelerations: Vec<f64>,
     /// Of the last step, its loops closed; and a workspace.
     configuration: Vec<f64>,
     predicted: Vec<f64>,
@@ -144,13 +146,7 @@ impl Servo {
         let own = chain.coordinates().iter().map(|&c| mechanism.coordinates()[c].limits);
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))
-            .map(|mut l| {
-                options.plant.keep_off(&mut l);
-                if l.acceleration == f64::INFINITY {
-                    l.acceleration = options.acceleration;
-                }
-                l
-            })
+            .map(|l| limits_of_servo(l, &options.plant, options.acceleration, options.jerk))
             .collect();
         let space = TaskSpace::new(options.scaling(), &chain, &limits);
         let margin =
@@ -179,7 +175,7 @@ impl Servo {
             length: chain.length_after_first_joint(mechanism),
             generic_rank: 0,
             braking_margins: limits.iter().enumerate().map(margin).collect(),
-            accelerates: limits.iter().any(|l| l.acceleration < f64::INFINITY),
+            accelerates: limits.iter().any(|l| l.acceleration.min(l.jerk) < f64::INFINITY),
             mechanism: mechanism.clone(),
             method: options.method,
             options,
@@ -202,6 +198,7 @@ impl Servo {
             hessian,
             last: vec![0.0; rates],
             rates: vec![0.0; mechanism.n().max(rates)],
+            accelerations: vec![0.0; mechanism.n().max(rates)],
             configuration: mechanism.home().to_vec(),
             predicted: mechanism.home().to_vec(),
             active: vec![None; rates],
@@ -452,6 +449,7 @@ impl Servo {
     /// Resets the servo to rest: clears the last joint velocities and the target.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
+        self.accelerations.fill(0.0);
         self.stall_detector = StallDetector::new();
         self.last_target = None;
         self.follower.reset();

@@ -1,5 +1,5 @@
-//! Velocity bounds of a joint for the next step: position, velocity and acceleration limits as one
-//! interval.
+//! Velocity bounds of a joint for the next step: position, velocity, acceleration and jerk limits as
+//! one interval.
 //!
 //! Formula  |v| <= V;  |v - v_before| <= A dt;  and v small enough that braking with A, step by
 //!          step, stops before the position limit: d >= D(v), d the distance to the limit, D the
@@ -7,6 +7,9 @@
 //! Stopping with x = v / (A dt), k = floor(x), f = x - k:
 //!          D / (A dt^2) = (k + 1) (k / 2 + f), inverted in closed form below; most velocities are
 //!          accepted by an upper bound of D without a square root (`BrakingMargin`)
+//! Jerk     |v - v_before - a dt| <= J dt^2, and the stop of least time from v (`jerk_limited_stop.rs`)
+//!          leaves neither the position nor the velocity limits. Its own next velocity always fits;
+//!          the ends of the interval are found from it by bisection
 //! Units    rad or m, s
 //! Valid    a joint that obeyed the interval in the last step has a non-empty interval in this one.
 //!          A measured state that violates it (a push, a start outside the limits) gets the
@@ -16,9 +19,11 @@
 //!          up to A dt^2 / 8
 //! Checked  tests/it/servo/limits.rs::limits_*, tests in this file
 
+use super::jerk_limited_stop::JerkLimitedStop;
+use super::plant::Plant;
+use super::stopping::stopping_velocity;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::model::Limits;
-use crate::scalar::clamp;
 use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
 
 /// State of a joint: the position of a coordinate and its last commanded velocity.
@@ -28,7 +33,17 @@ pub struct JointState {
     pub position: f64,
     /// Velocity commanded in the last step [rad/s or m/s].
     pub velocity: f64,
+    /// Change of the commanded velocity in the last step, divided by its duration [rad/s^2 or m/s^2];
+    /// counts for joints with a jerk limit.
+    pub acceleration: f64,
 }
+
+/// Halvings of the interval in which an end of the bounds lies; the rest is below a rounding of the
+/// largest change.
+const BISECTIONS: usize = 48;
+
+/// Share of a distance that sums over the steps of a stop may round away [-].
+const JERK_ROUNDING: f64 = 1e-12;
 
 impl VelocityBounds {
     /// The velocity bounds of a joint for the next step of `dt` seconds, from its position,
@@ -50,7 +65,7 @@ impl VelocityBounds {
     ///
     /// // A joint 0.5 mrad before its upper limit moves there within one step of 1 ms at most.
     /// let limits = Limits { lower: -1.0, upper: 1.0, velocity: 2.0, ..Limits::NONE };
-    /// let now = JointState { position: 0.9995, velocity: 0.1 };
+    /// let now = JointState { position: 0.9995, velocity: 0.1, acceleration: 0.0 };
     /// let bounds = VelocityBounds::next(&limits, now, 1e-3);
     /// assert!(bounds.upper <= 0.5 + 1e-9 && bounds.upper_cause == LimitKind::Position);
     /// assert_eq!(bounds.met(bounds.clamp(3.0)), Some(LimitKind::Position));
@@ -58,7 +73,55 @@ impl VelocityBounds {
     /// ```
     #[must_use]
     pub fn next(limits: &Limits, now: JointState, dt: f64) -> Self {
+        if limits.jerk < f64::INFINITY {
+            return Self::within_jerk(limits, now, dt);
+        }
         Self::within_change(limits, now, limits.acceleration * dt, dt)
+    }
+
+    /// The bounds of a joint with a jerk limit.
+    fn within_jerk(limits: &Limits, now: JointState, dt: f64) -> Self {
+        let JointState { position, velocity, acceleration } = now;
+        let braking = JerkLimitedStop::new(limits, velocity, acceleration, dt).next();
+        // The ends for motions upwards, and downwards with all signs changed.
+        let end = |sign: f64, limit: f64| {
+            let (v, a, brake) = (sign * velocity, sign * acceleration, sign * braking);
+            let room = distance_to_limit(sign * (limit - position), position, limit);
+            let room = room - JERK_ROUNDING * (v.abs() * dt + room.min(f64::MAX));
+            let faster = stopping_velocity((limits.velocity - v).max(0.0), limits.jerk, dt) * dt;
+            let candidates = [
+                (v + faster, LimitKind::Velocity),
+                (limits.velocity, LimitKind::Velocity),
+                (v + limits.acceleration * dt, LimitKind::Acceleration),
+                (v + (a + limits.jerk * dt) * dt, LimitKind::Jerk),
+            ];
+            let [first, ..] = candidates;
+            let least = |x: (f64, LimitKind), y: (f64, LimitKind)| if y.0 < x.0 { y } else { x };
+            let (most, cause) = candidates.into_iter().fold(first, least);
+            let highest = |v: f64, a: f64| {
+                dt * v + JerkLimitedStop::new(limits, v, a, dt).range().highest
+            };
+            let fits = |new: f64| highest(new, (new - v) / dt) <= room;
+            if most <= brake || room == f64::INFINITY || fits(most) {
+                return (most.max(brake), cause);
+            }
+            let end = if fits(brake) {
+                largest(brake, most, fits)
+            } else {
+                // Positions take precedence if a measured state contradicts the others.
+                brake.min(largest(0.0, brake.max(0.0), |new| highest(new, 0.0) <= room))
+            };
+            (end, LimitKind::Position)
+        };
+        let (upper, upper_cause) = end(1.0, limits.upper);
+        let (lower, lower_cause) = end(-1.0, limits.lower);
+        let (lower, upper) = if -lower > upper {
+            // One of them takes precedence: that of the side towards which the joint moves.
+            if velocity > 0.0 { (upper, upper) } else { (-lower, -lower) }
+        } else {
+            (-lower, upper)
+        };
+        Self { lower, upper, lower_cause, upper_cause }
     }
 
     /// The bounds of a passive joint: it brakes before its position limits, but its velocity
@@ -108,6 +171,54 @@ impl VelocityBounds {
     }
 }
 
+/// The limits of a joint of a servo: those of the model within the margins of the plant, where it has
+/// no acceleration or jerk limit those of the options.
+pub(in crate::control) fn limits_of_servo(
+    mut own: Limits,
+    plant: &Plant,
+    acceleration: f64,
+    jerk: f64,
+) -> Limits {
+    plant.keep_off(&mut own);
+    let or = |own: &mut f64, other: f64| {
+        if *own == f64::INFINITY {
+            *own = other;
+        }
+    };
+    or(&mut own.acceleration, acceleration);
+    or(&mut own.jerk, jerk);
+    own
+}
+
+/// The largest number between one that fits and one that does not.
+fn largest(fitting: f64, other: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    let (mut inside, mut outside) = (fitting, other);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (inside + outside);
+        if fits(middle) {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    inside
+}
+
+/// The acceleration of a joint after a step in which its velocity changed, for [`JointState`]: zero
+/// after a change beyond its limits, as a push makes necessary.
+pub(in crate::control) fn acceleration_of(
+    limits: &Limits,
+    before: f64,
+    change: f64,
+    dt: f64,
+) -> f64 {
+    const MORE: f64 = 1.0 + 1e-6;
+    let now = change / dt;
+    let is_within = now.abs() <= MORE * limits.acceleration
+        && (now - before).abs() <= MORE * limits.jerk * dt;
+    if is_within { now } else { 0.0 }
+}
+
 /// A sufficient condition, free of square roots, for a velocity to meet no limit of a joint; such
 /// velocities need no bounds.
 #[derive(Debug, Clone, Copy)]
@@ -141,7 +252,9 @@ impl BrakingMargin {
             (0.5 / a, 0.5 * dt, 0.125 * a * dt * dt)
         };
         let (lower, upper) = (lower + inwards(lower), upper - inwards(upper));
-        Self { lower, upper, velocity, step: a * dt, square, linear, constant, slowness: 1.0 / a }
+        // With a jerk limit no velocity is accepted here.
+        let step = if limits.jerk < f64::INFINITY { 0.0 } else { a * dt };
+        Self { lower, upper, velocity, step, square, linear, constant, slowness: 1.0 / a }
     }
 
     /// True if the velocity lies inside [`VelocityBounds::next`], away from its ends; false also
@@ -166,52 +279,26 @@ fn distance_to_limit(distance: f64, position: f64, limit: f64) -> f64 {
     (distance - LIMIT_ROUNDING * (1.0 + position.abs() + limit.abs())).max(0.0)
 }
 
-/// Upper bound of the distance in which steps of `dt` with deceleration `acceleration` stop a
-/// velocity >= 0; infinite or NaN if the acceleration is unlimited or zero.
-#[inline]
-pub(super) fn stopping_distance_bound(rate: f64, acceleration: f64, dt: f64) -> f64 {
-    (0.5 * rate / acceleration + 0.5 * dt) * rate + 0.125 * acceleration * dt * dt
-}
-
-/// The largest velocity from which steps of `dt` with deceleration `acceleration` stop within
-/// `distance`.
-pub(in crate::control) fn stopping_velocity(distance: f64, acceleration: f64, dt: f64) -> f64 {
-    if distance == f64::INFINITY {
-        return f64::INFINITY;
-    }
-    if acceleration == f64::INFINITY {
-        return distance / dt;
-    }
-    let unit = acceleration * dt * dt;
-    if unit == 0.0 {
-        return 0.0;
-    }
-    let scaled = distance / unit;
-    let k = (0.5 * ((1.0 + 8.0 * scaled).sqrt() - 1.0)).floor();
-    let f = clamp((scaled - 0.5 * k * (k + 1.0)) / (k + 1.0), 0.0, 1.0);
-    (k + f) * acceleration * dt
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn limits() -> Limits {
-        Limits { lower: -1.0, upper: 1.0, velocity: 2.0, acceleration: 10.0, effort: 1.0 }
+        Limits { lower: -1.0, upper: 1.0, velocity: 2.0, acceleration: 10.0, ..Limits::NONE }
     }
 
     /// A joint at maximum velocity stops at its limit without violating any bound.
     #[test]
     fn full_speed_into_the_limit_stops_there() {
         let (limits, dt) = (limits(), 0.003);
-        let mut now = JointState { position: -1.0, velocity: 0.0 };
+        let mut now = JointState { position: -1.0, velocity: 0.0, acceleration: 0.0 };
         for _ in 0..2000 {
             let bounds = VelocityBounds::next(&limits, now, dt);
             assert!(bounds.lower <= bounds.upper, "{bounds:?} at {now:?}");
             let rate = bounds.upper;
             assert!((rate - now.velocity).abs() <= limits.acceleration * dt * (1.0 + 1e-12));
             assert!(rate.abs() <= limits.velocity);
-            now = JointState { position: now.position + rate * dt, velocity: rate };
+            now = JointState { position: now.position + rate * dt, velocity: rate, acceleration: 0.0 };
             assert!(now.position <= limits.upper, "{}", now.position);
         }
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
@@ -232,7 +319,7 @@ mod tests {
                 _ => Limits { velocity: f64::INFINITY, ..some },
             };
             let dt = [1e-3, 0.1][round % 2];
-            let now = JointState { position: next(), velocity: 2.0 * next() };
+            let now = JointState { position: next(), velocity: 2.0 * next(), acceleration: 0.0 };
             let rate = match round % 3 {
                 0 => 2.5 * next(),
                 1 => now.velocity + 12.0 * dt * next(),
@@ -249,23 +336,6 @@ mod tests {
         assert!(clear > inside * 9 / 10, "{clear} clear, {inside} inside");
     }
 
-    #[test]
-    fn the_stopping_velocity_uses_the_whole_distance() {
-        for distance in [1e-9, 1e-5, 0.01, 0.3, 5.0] {
-            let (a, dt) = (7.0, 0.002);
-            let mut v = stopping_velocity(distance, a, dt);
-            let mut way = 0.0;
-            while v > 0.0 {
-                way += v * dt;
-                v -= a * dt;
-            }
-            assert!(
-                (way - distance).abs() < 1e-12 * (1.0 + distance / 1e-3),
-                "{way} of {distance}"
-            );
-        }
-    }
-
     /// Limits far from zero and wide ranges, where the rounding of `q + dt * velocity` is theirs.
     #[test]
     fn wide_ranges_are_not_left() {
@@ -276,10 +346,10 @@ mod tests {
                     for i in 1..200 {
                         let (share, dt) = (f64::from(i) * 0.005, 0.0007 * f64::from(i));
                         let start = lower + share * (upper - lower);
-                        let mut now = JointState { position: start, velocity: 0.0 };
+                        let mut now = JointState { position: start, velocity: 0.0, acceleration: 0.0 };
                         for _ in 0..40 {
                             let rate = VelocityBounds::next(&limits, now, dt).upper;
-                            now = JointState { position: now.position + rate * dt, velocity: rate };
+                            now = JointState { position: now.position + rate * dt, velocity: rate, acceleration: 0.0 };
                             assert!(now.position <= upper, "{} of {limits:?}", now.position);
                         }
                     }
@@ -290,7 +360,7 @@ mod tests {
 
     #[test]
     fn outside_a_limit_only_the_way_back_is_feasible() {
-        let now = JointState { position: 1.2, velocity: 0.0 };
+        let now = JointState { position: 1.2, velocity: 0.0, acceleration: 0.0 };
         let bounds = VelocityBounds::next(&limits(), now, 0.01);
         assert_eq!(bounds.upper, 0.0);
         assert!(bounds.lower < 0.0);
@@ -298,7 +368,7 @@ mod tests {
 
     #[test]
     fn no_limits_no_bounds() {
-        let now = JointState { position: 3.0, velocity: 1.0 };
+        let now = JointState { position: 3.0, velocity: 1.0, acceleration: 0.0 };
         let bounds = VelocityBounds::next(&Limits::NONE, now, 0.01);
         assert_eq!((bounds.lower, bounds.upper), (f64::NEG_INFINITY, f64::INFINITY));
     }

@@ -8,7 +8,7 @@
 //!          in full
 //! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs
 
-use super::limits::stopping_velocity;
+use super::stopping::stopping_velocity;
 use super::sensor_fit::SensorFit;
 use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, assemble};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};

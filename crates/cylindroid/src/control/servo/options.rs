@@ -86,6 +86,9 @@ pub struct ServoOptions {
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; by default the
     /// default ramp, [`tolerance::DEFAULT_RAMP`], and none for closed chains; infinite for none.
     pub acceleration: f64,
+    /// Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3]; infinite, the default,
+    /// for none. Joints without drives have none.
+    pub jerk: f64,
     /// The lag, the delay and the noise of the robot.
     pub plant: Plant,
     /// Time for which a twist of [`Servo::step_twist`](super::controller::Servo::step_twist) holds
@@ -125,6 +128,7 @@ impl ServoOptions {
             inertia_weights: false,
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
             acceleration: if closed { f64::INFINITY } else { tolerance::DEFAULT_RAMP },
+            jerk: f64::INFINITY,
             plant: Plant::IDEAL,
             command_timeout: 0.1,
             secondary: Vec::new(),
@@ -208,6 +212,7 @@ impl ServoOptions {
             ("linear speed", self.speed.linear),
             ("angular speed", self.speed.angular),
             ("acceleration", self.acceleration),
+            ("jerk", self.jerk),
             ("largest projection", self.largest_projection),
             ("command timeout", self.command_timeout),
         ] {

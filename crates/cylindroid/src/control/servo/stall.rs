@@ -15,7 +15,9 @@
 //! Units    m, rad, s
 //! Checked  tests/it/servo/stall.rs::stall_*
 
+use crate::control::solver::bounds::LimitKind;
 use crate::linalg::Svd;
+use crate::model::Limits;
 use crate::screws::NoInverse;
 use crate::tolerance::TRUNCATION;
 
@@ -117,10 +119,33 @@ pub(in crate::control) struct StallDetector {
 /// Acceleration of the joints in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::control) struct BrakingState {
-    /// True if a joint accelerates at its acceleration limit.
+    /// True if a joint accelerates at its acceleration or jerk limit.
     pub(in crate::control) accelerating: bool,
-    /// The largest |v| / A of the joints (s).
+    /// The largest |v| / A, or |v| / A + 2 A / J, of the joints (s).
     pub(in crate::control) stopping_time: f64,
+}
+
+impl BrakingState {
+    /// Adds a joint with its velocities of this step and of the one before.
+    pub(in crate::control) fn add(
+        &mut self,
+        limits: &Limits,
+        met: Option<LimitKind>,
+        [before, velocity]: [f64; 2],
+    ) {
+        let speed = velocity.abs();
+        let met = matches!(met, Some(LimitKind::Acceleration | LimitKind::Jerk));
+        self.accelerating |= met && speed > before.abs();
+        if speed > 0.0 {
+            let Limits { acceleration: a, jerk, .. } = *limits;
+            let ramps = if jerk == f64::INFINITY {
+                0.0
+            } else {
+                2.0 * (a / jerk).min((speed / jerk).sqrt())
+            };
+            self.stopping_time = self.stopping_time.max(speed / a + ramps);
+        }
+    }
 }
 
 impl StallDetector {

@@ -28,6 +28,8 @@ pub enum LimitKind {
     Velocity,
     /// Acceleration.
     Acceleration,
+    /// Jerk.
+    Jerk,
 }
 
 impl LimitKind {
@@ -38,6 +40,7 @@ impl LimitKind {
             Self::Position => "position",
             Self::Velocity => "velocity",
             Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
         }
     }
 }

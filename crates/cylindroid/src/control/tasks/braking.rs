@@ -12,6 +12,7 @@
 use super::braking_path::{Motion, Start};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
+use crate::control::servo::JerkLimitedStop;
 use crate::error::Result;
 
 /// Shares of the velocities of the solver, the rest braking, that are tried in turn [-].
@@ -29,19 +30,31 @@ impl TaskServo {
         let (mut accepted, mut contact) = (None, None);
         for share in SHARES {
             let mut velocities = std::mem::take(&mut path.velocities);
-            for (i, v) in velocities.iter_mut().enumerate() {
-                let (before, solved) = (self.before[i], self.rates[i]);
-                let less = (before.abs() - self.limits[i].acceleration * dt).max(0.0);
-                let braking = self.bounds[i].clamp(less.copysign(before));
+            let mut accelerations = std::mem::take(&mut path.accelerations);
+            let all = velocities.iter_mut().zip(&mut accelerations).enumerate();
+            for (i, (v, acceleration)) in all {
+                let (before, solved, limits) = (self.before[i], self.rates[i], &self.limits[i]);
+                let slower = if limits.jerk < f64::INFINITY {
+                    JerkLimitedStop::new(limits, before, self.accelerations[i], dt).next()
+                } else {
+                    (before.abs() - limits.acceleration * dt).max(0.0).copysign(before)
+                };
+                let braking = self.bounds[i].clamp(slower);
                 *v = braking + share * (solved - braking);
+                *acceleration = (*v - before) / dt;
             }
-            let motion = Motion { velocities: &velocities, limits: &self.limits, dt };
+            let motion = Motion {
+                velocities: &velocities,
+                accelerations: &accelerations,
+                limits: &self.limits,
+                dt,
+            };
             let found = if share == 0.0 && path.is_continued(state, collisions) {
                 Ok(None)
             } else {
                 path.contact(start, &mut collisions.model, motion)
             };
-            path.velocities = velocities;
+            (path.velocities, path.accelerations) = (velocities, accelerations);
             match found? {
                 None => {
                     accepted = Some(share);

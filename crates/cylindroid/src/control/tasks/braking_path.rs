@@ -4,6 +4,7 @@
 //! Formula  configuration after k steps  q_k = q + dt sum v_j, v_0 = v, v_(j+1) = v_j reduced by A dt;
 //!          all pairs apart at q_1, q_2, ... Steps are left out while no pair moves further than its
 //!          distance:  sum_c l_c |q_k - q_h|_c < d(q_h), l_c the lever of coordinate c
+//!          With a jerk limit v_j of `servo/jerk_limited_stop.rs`
 //! Units    m, rad or m of the coordinates, s
 //! Valid    trees among obstacles that rest; levers are those of the present configuration
 //! Cost     a sum over the joints while all pairs are further apart than they move; otherwise at
@@ -13,6 +14,7 @@
 
 use super::options::{CollisionAvoidance, MOST_PAIRS};
 use crate::collision::{CollisionModel, NearPair};
+use crate::control::servo::JerkLimitedStop;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::{Limits, Mechanism};
@@ -41,6 +43,7 @@ pub(super) struct BrakingPath {
     doubtful: Vec<(usize, f64)>,
     levers: Vec<f64>,
     pub(super) velocities: Vec<f64>,
+    pub(super) accelerations: Vec<f64>,
     far: Vec<NearPair>,
 }
 
@@ -56,6 +59,8 @@ pub(super) struct Start<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
     pub(super) velocities: &'a [f64],
+    /// Changes of the velocities in the first step, divided by its duration.
+    pub(super) accelerations: &'a [f64],
     pub(super) limits: &'a [Limits],
     pub(super) dt: f64,
 }
@@ -63,16 +68,28 @@ pub(super) struct Motion<'a> {
 impl Motion<'_> {
     /// Steps until all joints rest.
     fn steps(self) -> f64 {
-        let steps = |(v, limits): (&f64, &Limits)| -> f64 {
-            if *v == 0.0 { 0.0 } else { (v.abs() / (limits.acceleration * self.dt)).floor() + 1.0 }
+        let steps = |((v, a), limits): ((&f64, &f64), &Limits)| -> f64 {
+            if limits.jerk < f64::INFINITY {
+                1.0 + JerkLimitedStop::new(limits, *v, *a, self.dt).steps()
+            } else if *v == 0.0 {
+                0.0
+            } else {
+                (v.abs() / (limits.acceleration * self.dt)).floor() + 1.0
+            }
         };
-        self.velocities.iter().zip(self.limits).map(steps).fold(0.0, f64::max).min(MOST_STEPS)
+        let all = self.velocities.iter().zip(self.accelerations).zip(self.limits);
+        all.map(steps).fold(0.0, f64::max).min(MOST_STEPS)
     }
 
     /// Changes of the coordinates after some steps.
     fn change_after(self, steps: f64, change: &mut [f64]) {
-        let all = change.iter_mut().zip(self.velocities).zip(self.limits);
-        for ((change, v), limits) in all {
+        let all = change.iter_mut().zip(self.velocities).zip(self.accelerations).zip(self.limits);
+        for (((change, v), a), limits) in all {
+            if limits.jerk < f64::INFINITY {
+                let stop = JerkLimitedStop::new(limits, *v, *a, self.dt);
+                *change = if steps > 0.0 { self.dt * v + stop.way(steps - 1.0) } else { 0.0 };
+                continue;
+            }
             let (speed, less) = (v.abs(), limits.acceleration * self.dt);
             // Without an acceleration limit the first step is the last.
             let own = steps.min((speed / less).floor() + 1.0);
@@ -97,6 +114,7 @@ impl BrakingPath {
             doubtful: Vec::with_capacity(MOST_PAIRS),
             levers: vec![0.0; MOST_PAIRS * n],
             velocities: vec![0.0; n],
+            accelerations: vec![0.0; n],
             far: Vec::with_capacity(pairs),
         })
     }

@@ -190,11 +190,16 @@ impl Motions {
         }
     }
 
-    /// The largest rate of change of `c y`, for accelerations of the actuated joints within these
-    /// limits.
-    pub(super) fn acceleration(&self, c: impl Fn(usize) -> f64, limits: &[Limits]) -> f64 {
+    /// The largest rate of change of `c y`, for those of the actuated joints within one of their
+    /// limits: accelerations of velocities, jerks of accelerations.
+    pub(super) fn largest_change(
+        &self,
+        c: impl Fn(usize) -> f64,
+        limits: &[Limits],
+        of: fn(&Limits) -> f64,
+    ) -> f64 {
         let part = |coefficient: f64, limits: &Limits| {
-            if coefficient == 0.0 { 0.0 } else { coefficient.abs() * limits.acceleration }
+            if coefficient == 0.0 { 0.0 } else { coefficient.abs() * of(limits) }
         };
         match self {
             Self::Tree(columns) => {

@@ -102,6 +102,8 @@ pub struct TaskServoOptions {
     pub joint_weights: Vec<f64>,
     /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
     pub acceleration: f64,
+    /// Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3].
+    pub jerk: f64,
     /// The lag, the delay and the noise of the robot.
     pub plant: Plant,
     /// Where limits and distances stop a task: true to shorten its velocity as long as a share of it
@@ -126,6 +128,7 @@ impl TaskServoOptions {
             length: mechanism.reach(),
             joint_weights: Vec::new(),
             acceleration: f64::INFINITY,
+            jerk: f64::INFINITY,
             plant: Plant::IDEAL,
             keep_directions: true,
             eps: tolerance::TRUNCATION,
@@ -196,12 +199,11 @@ pub(super) fn check(
     let positive = Error::check_positive;
     positive("dt", options.dt)?;
     positive("length", options.length)?;
-    if !(options.acceleration > 0.0) {
-        return refuse(
-            "acceleration",
-            options.acceleration.to_string(),
-            "it must be positive; infinity means no limit",
-        );
+    for (option, most) in [("acceleration", options.acceleration), ("jerk", options.jerk)] {
+        if !(most > 0.0) {
+            let reason = "it must be positive; infinity means no limit";
+            return refuse(option, most.to_string(), reason);
+        }
     }
     options.plant.check(options.dt)?;
     if !(options.eps >= 0.0 && options.eps < 1.0) {

@@ -8,9 +8,9 @@
 
 use super::options::{MOST_PAIRS, MotionTask};
 use super::task_servo::TaskServo;
-use crate::control::servo::{JointState, stopping_velocity};
+use crate::control::servo::{JointState, jerk_limited_stopping_velocity};
 use crate::error::Result;
-use crate::model::Coordinate;
+use crate::model::{Coordinate, Limits};
 
 /// Share of the acceleration limits that brakes a pair of bodies [-]; the rest follows the other
 /// tasks.
@@ -25,7 +25,8 @@ impl TaskServo {
         let are_units = self.motions.limit_rows() == 0;
         for (i, limits) in self.limits.iter().enumerate() {
             let position = self.state.q().get(i).copied().unwrap_or(0.0);
-            let now = JointState { position, velocity: self.rates[i] };
+            let (velocity, acceleration) = (self.rates[i], self.accelerations[i]);
+            let now = JointState { position, velocity, acceleration };
             let bound = self.motions.bounds(i, limits, now, self.options.dt);
             self.bounds[i] = bound;
             let inequalities = &mut self.set.inequalities;
@@ -90,18 +91,19 @@ impl TaskServo {
         }
         let entries = &self.entries;
         let dt = self.options.dt;
-        let acceleration = BRAKING * motions.acceleration(|j| entries[j], &self.limits);
+        let most = |of: fn(&Limits) -> f64| BRAKING * motions.largest_change(|j| entries[j], &self.limits, of);
+        let (acceleration, jerk) = (most(|l| l.acceleration), most(|l| l.jerk));
         let (second_order, reach) = (self.second_order(), self.state.mechanism().reach());
         let row = self.motions.limit_rows() + place;
         let inequalities = &mut self.set.inequalities;
         inequalities.set_row(row, |j| entries[j]);
         inequalities.lower[self.limits.len() + place] = if room > second_order {
             // Half of the way in a step at most.
-            -stopping_velocity(0.5 * (room - second_order), acceleration, dt)
+            -jerk_limited_stopping_velocity(0.5 * (room - second_order), acceleration, jerk, dt)
         } else {
             // What roundings of steps add up to is taken back; a start further outside is not.
             let own = if room < -ROUNDING * reach { 0.0 } else { room };
-            ((second_order - own) / dt).min(acceleration * dt)
+            ((second_order - own) / dt).min(acceleration * dt).min(jerk * dt * dt)
         };
     }
 

@@ -25,7 +25,8 @@ use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{
-    BrakingState, Plant, Predictor, StallDetector, Status, limits_of_loop_joints,
+    BrakingState, Plant, Predictor, StallDetector, Status, acceleration_of, limits_of_loop_joints,
+    limits_of_servo,
 };
 use crate::control::solver::active_set::{ActiveSet, Level};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
@@ -115,6 +116,8 @@ pub struct TaskServo {
     pub(super) rates: Vec<f64>,
     /// Of the step before, and those that tasks of the lowest level ask for.
     pub(super) before: Vec<f64>,
+    /// Changes of the velocities in the last step, divided by its duration.
+    pub(super) accelerations: Vec<f64>,
     pub(super) braking: BrakingPath,
     pub(super) lowest_velocities: Vec<f64>,
     reports: Vec<TaskReport>,
@@ -139,13 +142,7 @@ impl TaskServo {
         let own = mechanism.coordinates().iter().map(|c| c.limits);
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))
-            .map(|mut limits| {
-                options.plant.keep_off(&mut limits);
-                if limits.acceleration == f64::INFINITY {
-                    limits.acceleration = options.acceleration;
-                }
-                limits
-            })
+            .map(|l| limits_of_servo(l, &options.plant, options.acceleration, options.jerk))
             .collect();
         let motions = Motions::new(mechanism, &options, &limits)?;
         let (u, v) = (motions.unknowns(), limits.len());
@@ -224,6 +221,7 @@ impl TaskServo {
             lowest_stopped_by: None,
             rates: vec![0.0; v],
             before: vec![0.0; v],
+            accelerations: vec![0.0; v],
             braking: BrakingPath::new(mechanism, capacity)?,
             lowest_velocities: vec![0.0; n],
             reports: vec![report; tasks.len()],
@@ -315,6 +313,7 @@ impl TaskServo {
     /// Resets the servo to rest: it is as a new one with the present tasks.
     pub fn reset(&mut self) {
         self.rates.fill(0.0);
+        self.accelerations.fill(0.0);
         self.braking.reset();
         if let Some(predictor) = &mut self.predictor {
             predictor.reset();
@@ -430,13 +429,9 @@ impl TaskServo {
         self.keep_braking_clear()?;
         let mut braking = BrakingState::default();
         for (i, rate) in self.rates.iter().enumerate() {
-            let speed = rate.abs();
-            let met = self.bounds[i].met(*rate) == Some(LimitKind::Acceleration);
-            braking.accelerating |= met && speed > self.before[i].abs();
-            if speed > 0.0 {
-                braking.stopping_time =
-                    braking.stopping_time.max(speed / self.limits[i].acceleration);
-            }
+            let (acceleration, limits) = (&mut self.accelerations[i], &self.limits[i]);
+            *acceleration = acceleration_of(limits, *acceleration, rate - self.before[i], dt);
+            braking.add(limits, self.bounds[i].met(*rate), [self.before[i], *rate]);
         }
         Ok(braking)
     }

@@ -10,6 +10,7 @@ mod hybrid;
 mod inertia;
 mod internal_force;
 mod inverse_choice;
+mod jerk;
 mod limits;
 mod measured;
 mod moving;

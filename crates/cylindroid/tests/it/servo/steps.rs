@@ -207,7 +207,7 @@ fn overflow_and_foreign_options_are_refused() {
 
     let bounds = VelocityBounds::next(
         &robot.coordinates()[0].limits,
-        JointState { position: 0.0, velocity: 0.0 },
+        JointState { position: 0.0, velocity: 0.0, acceleration: 0.0 },
         1e-3,
     );
     assert!(bounds.clamp(f64::NAN).is_nan());

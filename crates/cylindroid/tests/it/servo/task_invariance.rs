@@ -65,7 +65,7 @@ fn two_armed(view: View) -> Mechanism {
             upper: 2.6 * unit,
             velocity: 1.5 * unit,
             acceleration: 12.0 * unit,
-            effort: 1.0,
+            ..Limits::NONE
         };
         builder.joint(joint);
         link

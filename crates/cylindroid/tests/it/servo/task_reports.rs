@@ -20,7 +20,7 @@ fn table(limits: [Limits; 2]) -> Mechanism {
 }
 
 fn limits(acceleration: f64) -> Limits {
-    Limits { lower: -1.0, upper: 1.0, velocity: 1.0, acceleration, effort: 1.0 }
+    Limits { lower: -1.0, upper: 1.0, velocity: 1.0, acceleration, ..Limits::NONE }
 }
 
 fn at(robot: &Mechanism, x: f64, y: f64) -> TaskObjective {

@@ -26,7 +26,7 @@ pub(crate) fn two_armed() -> Mechanism {
         joint.axis = axis;
         joint.parent_from_joint = Pose::from_translation(at);
         joint.limits =
-            Limits { lower: -2.6, upper: 2.6, velocity: 2.0, acceleration: 20.0, effort: 1.0 };
+            Limits { lower: -2.6, upper: 2.6, velocity: 2.0, acceleration: 20.0, ..Limits::NONE };
         builder.joint(joint);
         link
     };
@@ -366,7 +366,7 @@ fn a_stop_is_named() {
     let mut robot = Mechanism::builder("slide");
     let mut joint = JointSpec::new("x", JointKind::Prismatic, "rail", "cart");
     joint.limits =
-        Limits { lower: -1.0, upper: 0.2, velocity: 1.0, acceleration: 5.0, effort: 1.0 };
+        Limits { lower: -1.0, upper: 0.2, velocity: 1.0, acceleration: 5.0, ..Limits::NONE };
     robot.joint(joint);
     let robot = robot.build().unwrap();
     let target = Pose::from_translation(Vec3::Z);
@@ -406,7 +406,7 @@ fn bodies_keep_their_distance() {
         joint.axis = if i == 1 { Vec3::Y } else { Vec3::Z };
         joint.parent_from_joint = Pose::from_translation(Vec3::X * if i == 0 { 0.0 } else { 0.3 });
         joint.limits =
-            Limits { lower: -3.0, upper: 3.0, velocity: 2.0, acceleration: 10.0, effort: 1.0 };
+            Limits { lower: -3.0, upper: 3.0, velocity: 2.0, acceleration: 10.0, ..Limits::NONE };
         builder.joint(joint);
         parent = name;
     }

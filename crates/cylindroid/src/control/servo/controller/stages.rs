@@ -4,14 +4,14 @@
 
 use super::super::approach;
 use super::super::edge::Edge;
-use super::super::limits::JointState;
+use super::super::limits::{JointState, acceleration_of};
 use super::super::options::SecondaryNullSpace;
 use super::super::secondary::Context;
 use super::super::stall::BrakingState;
 use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
-use crate::control::solver::bounds::{LimitKind, VelocityBounds};
+use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::{Path, Problem, Saturation, brake, solve};
 use crate::error::Result;
 use crate::linalg::RowSpace;
@@ -229,7 +229,8 @@ impl Servo {
         let places = self.chain.coordinates().iter().zip(&self.braking_margins);
         let mut clear = true;
         for (((primary, secondary), column), (&c, margin)) in scaled.zip(places) {
-            let now = JointState { position: q[c], velocity: self.rates[c] };
+            let acceleration = self.accelerations[c];
+            let now = JointState { position: q[c], velocity: self.rates[c], acceleration };
             clear &= margin.allows(now, (primary + secondary) * column);
         }
         if !clear {
@@ -237,10 +238,11 @@ impl Servo {
         }
         let scaled = self.primary.iter_mut().zip(&self.secondary).zip(&self.space.columns);
         let places = self.chain.coordinates().iter().zip(&self.braking_margins);
-        let mut braking = BrakingState::default();
+        let (mut braking, dt) = (BrakingState::default(), self.options.dt);
         for (((primary, secondary), column), (&c, margin)) in scaled.zip(places) {
             *primary += secondary;
-            self.rates[c] = *primary * column;
+            let before = std::mem::replace(&mut self.rates[c], *primary * column);
+            self.accelerations[c] = (self.rates[c] - before) / dt;
             if self.accelerates {
                 let time = self.rates[c].abs() * margin.slowness;
                 braking.stopping_time = braking.stopping_time.max(time);
@@ -268,15 +270,16 @@ impl Servo {
     /// The bounds of the next joint velocities, in weighted coordinates.
     pub(super) fn load_bounds(&mut self) {
         let coupled = self.coupled.as_ref();
-        let acceleration =
+        let least =
             coupled.map_or(f64::INFINITY, |coupled| coupled.least_acceleration(&self.limits));
         for i in 0..self.bounds.len() {
             let c = self.place(i);
             let position = self.chain.q().get(i).copied().unwrap_or(0.0);
-            let now = JointState { position, velocity: self.rates[c] };
+            let (velocity, acceleration) = (self.rates[c], self.accelerations[c]);
+            let now = JointState { position, velocity, acceleration };
             let (limits, dt) = (&self.limits[i], self.options.dt);
             let mut bound = match &self.coupled {
-                Some(coupled) => coupled.bounds(i, (limits, acceleration), now, dt),
+                Some(coupled) => coupled.bounds(i, (limits, least), now, dt),
                 None => VelocityBounds::next(limits, now, dt),
             };
             self.own_bounds[i] = bound;
@@ -302,14 +305,11 @@ impl Servo {
                 true => 0.0,
                 false => self.own_bounds[i].clamp(rate * self.space.columns[i]),
             };
-            let before = std::mem::replace(&mut self.rates[c], own).abs();
-            let speed = own.abs();
-            braking.accelerating |=
-                self.active[i] == Some(LimitKind::Acceleration) && speed > before;
-            if speed > 0.0 {
-                braking.stopping_time =
-                    braking.stopping_time.max(speed / self.limits[i].acceleration);
-            }
+            let before = std::mem::replace(&mut self.rates[c], own);
+            let acceleration = &mut self.accelerations[c];
+            let (change, dt) = (own - before, self.options.dt);
+            *acceleration = acceleration_of(&self.limits[i], *acceleration, change, dt);
+            braking.add(&self.limits[i], self.active[i], [before, own]);
         }
         braking
     }

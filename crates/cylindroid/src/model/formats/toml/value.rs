@@ -334,7 +334,7 @@ impl<'t> Table<'t> {
 
     /// The key `limits`; missing limits are infinite.
     pub(super) fn limits(&self) -> Result<Limits> {
-        let keys = ["lower", "upper", "velocity", "acceleration", "effort"];
+        let keys = ["lower", "upper", "velocity", "acceleration", "jerk", "effort"];
         let Some(table) = self.table("limits", "limits", &keys)? else { return Ok(Limits::NONE) };
         let or_unlimited = |key| table.bound(key).map(|x| x.unwrap_or(f64::INFINITY));
         Ok(Limits {
@@ -342,6 +342,7 @@ impl<'t> Table<'t> {
             upper: or_unlimited("upper")?,
             velocity: or_unlimited("velocity")?,
             acceleration: or_unlimited("acceleration")?,
+            jerk: or_unlimited("jerk")?,
             effort: or_unlimited("effort")?,
         })
     }

@@ -129,14 +129,13 @@ impl Reader<'_> {
             return Ok(limits);
         };
         let at = node.range().start;
-        self.leftovers(node, &["lower", "upper", "velocity", "acceleration", "effort"], &[]);
+        self.leftovers(node, &["lower", "upper", "velocity", "acceleration", "jerk", "effort"], &[]);
         let (lower, upper) = (self.bound(node, "lower")?, self.bound(node, "upper")?);
         let velocity = self.largest(node, "velocity", name)?;
         let effort = self.largest(node, "effort", name)?;
-        limits.acceleration = match self.bound(node, "acceleration")? {
-            Some(a) if a > 0.0 => a,
-            _ => f64::INFINITY,
-        };
+        let positive = |x: Option<f64>| x.filter(|x| *x > 0.0).unwrap_or(f64::INFINITY);
+        limits.acceleration = positive(self.bound(node, "acceleration")?);
+        limits.jerk = positive(self.bound(node, "jerk")?);
         if kind.dof() > 1 {
             self.notes.add(at, "<limit>", "not used for joints of several coordinates", name);
             return Ok(Limits::NONE);
