@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use cylindroid::ik::Task;
 use cylindroid::linalg::Interval;
+use cylindroid::model::formats::srdf;
 use cylindroid::{Error, Mechanism};
 
 /// A list of `N` numbers: `0.1,-2e-3,4`; spaces after commas and square brackets are allowed.
@@ -175,6 +176,8 @@ pub(crate) enum Joints {
     All(Vec<f64>),
     /// `name=value,...`; the other coordinates as at home.
     Some(Vec<(String, f64)>),
+    /// A state of the SRDF.
+    State(String),
 }
 
 impl FromStr for Joints {
@@ -187,19 +190,33 @@ impl FromStr for Joints {
             named if named.contains('=') => {
                 named.split(',').map(assignment).collect::<Result<_, _>>().map(Self::Some)
             }
-            list => numbers(list).map(Self::All),
+            list => match numbers(list) {
+                Err(_) if is_name(list) => Ok(Self::State(list.to_owned())),
+                numbers => numbers.map(Self::All),
+            },
         }
     }
 }
 
+/// True for one word that begins with a letter.
+fn is_name(text: &str) -> bool {
+    text.starts_with(char::is_alphabetic) && !text.contains([',', ' ', '\t'])
+}
+
 impl Joints {
-    /// The configuration; angles are in degrees if `degrees` is set.
+    /// The configuration; angles are in degrees if `degrees` is set, except in the states of an SRDF.
     pub(crate) fn configuration(
         &self,
         robot: &Mechanism,
+        srdf_file: Option<&Path>,
         degrees: bool,
     ) -> cylindroid::Result<Vec<f64>> {
-        self.resolve(robot, degrees, robot.home())
+        match (self, srdf_file) {
+            (Self::State(name), Some(file)) => {
+                srdf::load(file)?.configuration(name, robot, robot.home())
+            }
+            _ => self.resolve(robot, degrees, robot.home()),
+        }
     }
 
     /// The joint velocities; those not named are zero.
@@ -224,6 +241,13 @@ impl Joints {
         };
         match self {
             Self::Home => Ok(rest.to_vec()),
+            Self::State(name) => Err(Error::InvalidOption {
+                option: "joints",
+                value: name.clone(),
+                reason: "it is no number; give numbers with commas, `name=value`, `home` or \
+                         `zero`; a configuration may also be a state of --srdf"
+                    .to_owned(),
+            }),
             Self::Zero => Ok(vec![0.0; robot.n()]),
             Self::All(list) => Ok(list.iter().enumerate().map(|(i, v)| si(i, *v)).collect()),
             Self::Some(pairs) => {

@@ -114,7 +114,7 @@ pub(crate) fn limits_dict<'py>(
     let all = PyDict::new(py);
     for (joint, l) in limits {
         let of = PyDict::new(py);
-        let values = [l.lower, l.upper, l.velocity, l.acceleration, l.effort];
+        let values = [l.lower, l.upper, l.velocity, l.acceleration, l.jerk, l.effort];
         for (name, value) in JointLimits::NAMES.into_iter().zip(values) {
             if let Some(value) = value {
                 of.set_item(name, value)?;

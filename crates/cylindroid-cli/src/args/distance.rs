@@ -1,7 +1,5 @@
 //! The arguments of `distance`.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 use cylindroid::collision::MeshShape;
 
@@ -45,10 +43,6 @@ pub(crate) struct CollisionArgs {
     /// An obstacle in the world, see below; repeatable
     #[arg(long, value_name = "NAME=SHAPE@POSE", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<ObstacleArg>,
-
-    /// SRDF whose `disable_collisions` name pairs of links that are not watched
-    #[arg(long, value_name = "FILE")]
-    pub(crate) srdf: Option<PathBuf>,
 
     /// Shape that stands for a mesh [default: convex_hull]
     #[arg(long, value_name = "SHAPE")]

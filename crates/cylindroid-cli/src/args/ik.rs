@@ -75,7 +75,6 @@ impl AvoidanceArgs {
         }
         let given = [
             ("--gap", self.gap.is_some()),
-            ("--srdf", self.collision.srdf.is_some()),
             ("--meshes", self.collision.meshes.is_some()),
             ("--samples", self.collision.samples.is_some()),
         ];

@@ -255,6 +255,11 @@ pub(crate) struct ServoArgs {
     #[arg(long, value_name = "A", allow_hyphen_values = true)]
     pub(crate) acceleration: Option<f64>,
 
+    /// Jerk limit of joints that have none in the model [rad/s^3 or m/s^3] [default: none; with
+    /// several tasks as well]
+    #[arg(long, value_name = "J", allow_hyphen_values = true)]
+    pub(crate) jerk: Option<f64>,
+
     /// The robot is behind its commands: time until they arrive at its drives [s] [default: 0]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub(crate) delay: Option<f64>,

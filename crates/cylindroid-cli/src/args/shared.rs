@@ -16,6 +16,15 @@ pub(crate) struct ModelArgs {
     /// Value of a parameter of a mechanism file in place of the file's; repeatable
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) parameter: Vec<Assignment>,
+
+    /// SRDF of the model: its groups (--group), its states as values of --q, and the pairs of links
+    /// that `disable_collisions` leaves out
+    #[arg(long, value_name = "FILE")]
+    pub(crate) srdf: Option<PathBuf>,
+
+    /// Only the joints of this group of the SRDF move, the others rest at home; its tip is the tool
+    #[arg(long, value_name = "NAME", requires = "srdf")]
+    pub(crate) group: Option<String>,
 }
 
 /// A model at a configuration.
@@ -25,7 +34,7 @@ pub(crate) struct ConfigurationArgs {
     pub(crate) model: ModelArgs,
 
     /// Configuration [rad or m]: numbers in the order of `info` (`0,-0.8,...`), `name=value,...`
-    /// with the other coordinates at home, `home`, or `zero`
+    /// with the other coordinates at home, `home`, `zero`, or a state of the SRDF
     #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
     pub(crate) q: Joints,
 
@@ -51,8 +60,8 @@ pub(crate) struct FrameArgs {
 #[derive(Debug, Args)]
 pub(crate) struct LimitsArgs {
     /// Limits of joints in place of those of the model: a table [NAME] for each joint with `lower`,
-    /// `upper` (narrower than in the model), `velocity`, `acceleration`, `effort` [rad or m, s, N m or
-    /// N]
+    /// `upper` (narrower than in the model), `velocity`, `acceleration`, `jerk`, `effort` [rad or m, s,
+    /// N m or N]
     #[arg(long, value_name = "FILE.toml")]
     pub(crate) limits: Option<PathBuf>,
 }

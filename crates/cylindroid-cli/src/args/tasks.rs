@@ -49,7 +49,6 @@ impl TasksArgs {
         let given = [
             ("--gap", self.gap.is_some()),
             ("--margin", self.margin.is_some()),
-            ("--srdf", self.collision.srdf.is_some()),
             ("--meshes", self.collision.meshes.is_some()),
             ("--samples", self.collision.samples.is_some()),
         ];

@@ -62,10 +62,6 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "NAME=SHAPE@POSE", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<ObstacleArg>,
 
-    /// SRDF whose `disable_collisions` name pairs of links that are not watched
-    #[arg(long, value_name = "FILE")]
-    pub(crate) srdf: Option<PathBuf>,
-
     /// Start, print the URL and exit
     #[arg(long)]
     pub(crate) check: bool,

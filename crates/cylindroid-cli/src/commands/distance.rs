@@ -1,6 +1,7 @@
 //! `distance`: distances between links and to obstacles.
 
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 use cylindroid::Mechanism;
@@ -45,12 +46,13 @@ struct IgnoredJson<'a> {
     why: &'a str,
 }
 
-/// The collision model of the arguments.
+/// The collision model of the arguments; pairs that the SRDF disables are left out.
 pub(crate) fn collision_model(
     robot: &Mechanism,
     args: &CollisionArgs,
+    srdf_file: Option<&Path>,
 ) -> cylindroid::Result<CollisionModel> {
-    let disabled = match &args.srdf {
+    let disabled = match srdf_file {
         Some(path) => srdf::load(path)?.pairs(robot),
         None => Vec::new(),
     };
@@ -74,7 +76,8 @@ pub(crate) fn run(
     out: &mut dyn Write,
 ) -> anyhow::Result<ExitCode> {
     let robot = load(&args.configuration.model, &[])?;
-    let mut model = collision_model(&robot, &args.collision)?;
+    let mut model =
+        collision_model(&robot, &args.collision, args.configuration.model.srdf.as_deref())?;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let mut near: Vec<NearPair> = Vec::new();
     model.near(&state, args.margin.max(0.0), &mut near)?;

@@ -143,7 +143,14 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         let mut solver = Solver::new(&robot, &goals, &options)?;
         if let Some(gap) = gap {
             Error::check_finite("--gap", &[gap])?;
-            solver.avoid(collision_model(&robot, &args.avoidance.collision)?, gap)?;
+            solver.avoid(
+                collision_model(
+                    &robot,
+                    &args.avoidance.collision,
+                    args.configuration.model.srdf.as_deref(),
+                )?,
+                gap,
+            )?;
         }
         let found = match args.all {
             None => vec![solver.solve(&goals)?],

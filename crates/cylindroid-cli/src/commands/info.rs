@@ -44,6 +44,7 @@ struct CoordinateJson<'a> {
     upper: f64,
     velocity: f64,
     acceleration: f64,
+    jerk: f64,
     effort: f64,
     actuated: bool,
     home: f64,
@@ -163,6 +164,7 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
             upper: c.limits.upper,
             velocity: c.limits.velocity,
             acceleration: c.limits.acceleration,
+            jerk: c.limits.jerk,
             effort: c.limits.effort,
             actuated: c.actuated,
             home,
@@ -331,7 +333,7 @@ fn print_coordinates(
     info: &InfoJson<'_>,
     robot: &Mechanism,
 ) -> io::Result<()> {
-    let columns = [
+    let mut columns = vec![
         ("coordinate", Align::Left),
         ("kind", Align::Left),
         ("unit", Align::Left),
@@ -342,6 +344,12 @@ fn print_coordinates(
         ("effort", Align::Right),
         ("home", Align::Right),
     ];
+    // Few models limit the jerk.
+    const JERK: usize = 7;
+    let limits_jerks = info.coordinates.iter().any(|c| c.jerk.is_finite());
+    if limits_jerks {
+        columns.insert(JERK, ("jerk [unit/s^3]", Align::Right));
+    }
     let rows = info.coordinates.iter().zip(robot.coordinates()).map(|(c, coordinate)| {
         let unit = match coordinate.kind.is_length() {
             _ if c.effort.is_infinite() => "",
@@ -349,7 +357,7 @@ fn print_coordinates(
             false => " N m",
         };
         let effort = format!("{}{unit}", output::number(c.effort));
-        vec![
+        let mut row = vec![
             c.name.to_owned(),
             c.kind.to_owned(),
             c.unit.to_owned(),
@@ -359,7 +367,11 @@ fn print_coordinates(
             output::number(c.acceleration),
             effort,
             output::number(c.home),
-        ]
+        ];
+        if limits_jerks {
+            row.insert(JERK, output::number(c.jerk));
+        }
+        row
     });
     output::table(out, &columns, rows)
 }

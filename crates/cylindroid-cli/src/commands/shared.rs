@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use cylindroid::model::Mechanism;
+use cylindroid::model::formats::srdf;
 use cylindroid::model::formats::toml::with_limits_of_file;
 use cylindroid::{EndEffector, Error, ParametricModel, Pose, Vec3};
 
@@ -24,12 +25,23 @@ pub(crate) fn answer(yes: bool) -> ExitCode {
 /// Loads the model, with these joints actuated if any are named.
 pub(crate) fn load(model: &ModelArgs, actuated: &[String]) -> cylindroid::Result<Mechanism> {
     let values: Vec<(&str, f64)> = model.parameter.iter().map(Assignment::pair).collect();
-    let loaded = cylindroid::load_with_parameters(&model.name, &values)?;
+    let mut loaded = cylindroid::load_with_parameters(&model.name, &values)?;
+    if let (Some(file), Some(group)) = (&model.srdf, &model.group) {
+        loaded = srdf::load(file)?.group(group, &loaded, loaded.home())?;
+    }
     if actuated.is_empty() { Ok(loaded) } else { loaded.with_actuated(actuated) }
 }
 
 /// The mechanism file of the model, for other values of its parameters.
 pub(crate) fn parametric(model: &ModelArgs) -> cylindroid::Result<ParametricModel> {
+    if let Some(group) = &model.group {
+        return Err(Error::InvalidOption {
+            option: "--group",
+            value: group.clone(),
+            reason: "the other joints rest at the home of one design; omit it where designs vary"
+                .to_owned(),
+        });
+    }
     let values: Vec<(&str, f64)> = model.parameter.iter().map(Assignment::pair).collect();
     ParametricModel::read(&model.name, &values)
 }
@@ -47,7 +59,7 @@ pub(crate) fn configuration(
     robot: &Mechanism,
     args: &ConfigurationArgs,
 ) -> cylindroid::Result<Vec<f64>> {
-    let q = args.q.configuration(robot, args.degrees)?;
+    let q = args.q.configuration(robot, args.model.srdf.as_deref(), args.degrees)?;
     robot.check_q("--q", &q)?;
     Ok(q)
 }

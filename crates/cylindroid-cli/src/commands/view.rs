@@ -86,7 +86,7 @@ fn start(args: &ViewArgs) -> Result<Start> {
         tool.frame = robot.reference();
     }
     check_count(args.obstacle.len())?;
-    let disabled = match &args.srdf {
+    let disabled = match &args.configuration.model.srdf {
         Some(path) => srdf::load(path)?.pairs(&robot),
         None => Vec::new(),
     };

@@ -85,6 +85,7 @@ impl Avoidance {
             dt: options.dt,
             length: options.length,
             acceleration: options.acceleration,
+            jerk: options.jerk,
             collisions: Some(CollisionAvoidance { model, gap, margin }),
             ..TaskServoOptions::new(mechanism)
         };

@@ -19,6 +19,7 @@ mod parameters;
 mod pictures;
 mod screws;
 mod shape;
+mod srdf;
 mod statics;
 mod sweep;
 mod tasks;

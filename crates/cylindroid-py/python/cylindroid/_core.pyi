@@ -800,6 +800,8 @@ class Mechanism:
     @property
     def acceleration_limit(self) -> _Array: ...
     @property
+    def jerk_limit(self) -> _Array: ...
+    @property
     def effort_limit(self) -> _Array: ...
     @property
     def actuated(self) -> list[str]: ...
@@ -1378,6 +1380,7 @@ class Servo:
         tolerance_orientation: float | None = None,
         speed: float | tuple[float, float] | ArrayLike | None = None,
         acceleration: float | None = None,
+        jerk: float | None = None,
         delay: float | None = None,
         time_constant: float | None = None,
         noise: float | None = None,
@@ -1407,6 +1410,7 @@ class Servo:
         limits: dict[str, dict[str, float]] | None = None,
         dt: float | None = None,
         acceleration: float | None = None,
+        jerk: float | None = None,
         delay: float | None = None,
         time_constant: float | None = None,
         noise: float | None = None,
@@ -1919,6 +1923,7 @@ class TaskServo:
         length: float | None = None,
         joint_weights: ArrayLike | None = None,
         acceleration: float | None = None,
+        jerk: float | None = None,
         delay: float | None = None,
         time_constant: float | None = None,
         noise: float | None = None,

@@ -42,6 +42,11 @@ impl PyMechanism {
     }
 
     #[getter]
+    fn jerk_limit<'py>(&self, py: Python<'py>) -> Array<'py> {
+        self.limits(py, |l| l.jerk)
+    }
+
+    #[getter]
     fn effort_limit<'py>(&self, py: Python<'py>) -> Array<'py> {
         self.limits(py, |l| l.effort)
     }
@@ -52,8 +57,8 @@ impl PyMechanism {
     /// ----------
     /// limits : dict of str to dict of str to float
     ///     For each joint, coordinate or loop joint the limits that replace those of the model:
-    ///     'lower' and 'upper' (narrower than in the model), 'velocity', 'acceleration', 'effort'
-    ///     [rad or m, /s, /s^2, N m or N].
+    ///     'lower' and 'upper' (narrower than in the model), 'velocity', 'acceleration', 'jerk',
+    ///     'effort' [rad or m, /s, /s^2, /s^3, N m or N].
     ///
     /// Returns
     /// -------

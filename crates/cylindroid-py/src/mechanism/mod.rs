@@ -54,8 +54,8 @@ pub(crate) use srdf::PySrdf;
 ///     The first and the second link of each contact, a finger and the object.
 /// actuated : list of str
 ///     The actuated coordinates and loop joints.
-/// lower, upper, velocity_limit, acceleration_limit, effort_limit : ndarray, (n,)
-///     Infinite if the file has no limit [rad or m, /s, /s^2, N m or N].
+/// lower, upper, velocity_limit, acceleration_limit, jerk_limit, effort_limit : ndarray, (n,)
+///     Infinite if the file has no limit [rad or m, /s, /s^2, /s^3, N m or N].
 /// home : ndarray, (n,)
 ///     The home configuration of the file, otherwise zero, or the middle of limits that exclude
 ///     zero.

@@ -30,7 +30,7 @@ pub(crate) use trajectory::PyTrajectory;
 /// A Cartesian servo (resolved-rate control) of one frame: computes joint velocities from joint
 /// positions and a target pose.
 ///
-/// It never violates a position, velocity or acceleration limit, stays bounded at singularities,
+/// It never violates a position, velocity, acceleration or jerk limit, stays bounded at singularities,
 /// and reports why it stalls. Closed chains are controlled at their reference through their
 /// actuated joints.
 ///
@@ -52,6 +52,8 @@ pub(crate) use trajectory::PyTrajectory;
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]; `inf` for none. Default: 20, the
 ///     default ramp; none for closed chains and with `tasks`.
+/// jerk : float, optional
+///     Limit of joints that have none in the model [rad/s^3 or m/s^3]. Default: none.
 /// delay, time_constant, noise : float, optional
 ///     The robot: time until a command arrives at its drives (s), the time constant with which they
 ///     follow it (s), and the largest error of its encoders [rad or m]. The servo steers the
@@ -90,7 +92,7 @@ pub(crate) use trajectory::PyTrajectory;
 ///     The inverse used if the requested one does not exist or enlarges motions too much. Default:
 ///     none, the arm stops.
 /// tasks : sequence of MotionTask, optional
-///     Makes a `TaskServo` of these tasks instead, with `collisions`, `limits`, `dt`, `acceleration`,
+///     Makes a `TaskServo` of these tasks instead, with `collisions`, `limits`, `dt`, `acceleration`, `jerk`,
 ///     `delay`, `time_constant`, `noise`, `length` and `joint_weights`; the other options belong to a single frame.
 /// collisions : CollisionAvoidance, optional
 ///     The distances to keep, beside `tasks`.
@@ -207,7 +209,7 @@ impl PyServo {
     #[new]
     #[pyo3(signature = (mechanism, frame = None, gain = None, *, tool = None, dt = None,
         tolerance_position = None, tolerance_orientation = None, speed = None,
-        acceleration = None, delay = None, time_constant = None, noise = None,
+        acceleration = None, jerk = None, delay = None, time_constant = None, noise = None,
         command_timeout = None, limits = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
         inverse = "truncated", give_up = None, fallback = None, tasks = None, collisions = None,
@@ -225,6 +227,7 @@ impl PyServo {
         #[pyo3(from_py_with = argument)] tolerance_orientation: Option<f64>,
         speed: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        #[pyo3(from_py_with = argument)] jerk: Option<f64>,
         #[pyo3(from_py_with = argument)] delay: Option<f64>,
         #[pyo3(from_py_with = argument)] time_constant: Option<f64>,
         #[pyo3(from_py_with = argument)] noise: Option<f64>,
@@ -283,7 +286,7 @@ impl PyServo {
             };
             let (eps, keep_directions) = (None, None);
             let numbers =
-                TaskServoNumbers { dt, length, acceleration, eps, keep_directions, plant };
+                TaskServoNumbers { dt, length, acceleration, jerk, eps, keep_directions, plant };
             let collisions = collisions.as_ref().map(Py::get);
             let servo = PyTaskServo::make(py, robot, (&tasks, collisions), &[], weights, numbers)?;
             return Ok(Bound::new(py, servo)?.into_any());
@@ -309,6 +312,7 @@ impl PyServo {
         set(&mut options.tolerance.position, tolerance_position);
         set(&mut options.tolerance.orientation, tolerance_orientation);
         set(&mut options.acceleration, acceleration);
+        set(&mut options.jerk, jerk);
         set(&mut options.command_timeout, command_timeout);
         set(&mut options.length, length);
         options.plant = plant;

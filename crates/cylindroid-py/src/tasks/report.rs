@@ -25,7 +25,7 @@ use crate::table::number;
 ///     postures and velocities, the share that is not realised.
 /// limit : (str, str) or None
 ///     The joint whose limit stops the task, and the kind of the limit: 'position', 'velocity' or
-///     'acceleration'.
+///     'acceleration', 'jerk'.
 /// pair : (str, str) or None
 ///     The links or obstacles whose distance stops the task.
 /// half_space : str or None

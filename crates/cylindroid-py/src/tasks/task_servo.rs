@@ -20,7 +20,7 @@ use crate::options;
 /// A servo of many tasks with priorities, inside the limits of all joints and outside of collisions.
 ///
 /// Tasks of level 0 come first; a level moves on what the levels before it leave free, and tasks of
-/// one level share it by their weights. Position, velocity and acceleration limits and distances to
+/// one level share it by their weights. Position, velocity, acceleration and jerk limits and distances to
 /// other bodies stand above all levels. A task that they stop is scaled along its direction first; its
 /// direction changes only if no scale is feasible, or at once with `keep_directions=False`. For arms, hands, several arms, mobile and
 /// floating bases, and closed chains, of which the actuated joints are the unknowns.
@@ -44,6 +44,8 @@ use crate::options;
 ///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1.
 /// acceleration : float, optional
 ///     Limit of joints that have none in the model [rad/s^2 or m/s^2]. Default: none.
+/// jerk : float, optional
+///     Limit of joints that have none in the model [rad/s^3 or m/s^3]. Default: none.
 /// delay, time_constant, noise : float, optional
 ///     Of the robot, see `Servo` (s, s, rad or m). Default: 0.
 /// keep_directions : bool, optional
@@ -151,6 +153,7 @@ pub(crate) struct TaskServoNumbers {
     pub(crate) dt: Option<f64>,
     pub(crate) length: Option<f64>,
     pub(crate) acceleration: Option<f64>,
+    pub(crate) jerk: Option<f64>,
     pub(crate) eps: Option<f64>,
     pub(crate) keep_directions: Option<bool>,
     pub(crate) plant: Plant,
@@ -170,6 +173,7 @@ impl PyTaskServo {
         set(&mut chosen.dt, numbers.dt);
         set(&mut chosen.length, numbers.length);
         set(&mut chosen.acceleration, numbers.acceleration);
+        set(&mut chosen.jerk, numbers.jerk);
         set(&mut chosen.eps, numbers.eps);
         chosen.keep_directions = numbers.keep_directions.unwrap_or(chosen.keep_directions);
         chosen.plant = numbers.plant;
@@ -207,7 +211,7 @@ impl PyTaskServo {
 impl PyTaskServo {
     #[new]
     #[pyo3(signature = (mechanism, tasks, collisions = None, *, half_spaces = None, limits = None,
-        dt = None, length = None, joint_weights = None, acceleration = None, delay = None,
+        dt = None, length = None, joint_weights = None, acceleration = None, jerk = None, delay = None,
         time_constant = None, noise = None, keep_directions = None, eps = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
@@ -221,6 +225,7 @@ impl PyTaskServo {
         #[pyo3(from_py_with = argument)] length: Option<f64>,
         joint_weights: Option<Numbers<'_>>,
         #[pyo3(from_py_with = argument)] acceleration: Option<f64>,
+        #[pyo3(from_py_with = argument)] jerk: Option<f64>,
         #[pyo3(from_py_with = argument)] delay: Option<f64>,
         #[pyo3(from_py_with = argument)] time_constant: Option<f64>,
         #[pyo3(from_py_with = argument)] noise: Option<f64>,
@@ -228,7 +233,8 @@ impl PyTaskServo {
         #[pyo3(from_py_with = argument)] eps: Option<f64>,
     ) -> Result<Self> {
         let plant = options::plant(delay, time_constant, noise);
-        let numbers = TaskServoNumbers { dt, length, acceleration, eps, keep_directions, plant };
+        let numbers =
+            TaskServoNumbers { dt, length, acceleration, jerk, eps, keep_directions, plant };
         let limited = match &limits {
             None => mechanism.inner.clone(),
             Some(limits) => mechanism.inner.with_limits(&options::limits(limits)?)?,

@@ -30,14 +30,8 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 6] = [
-        Self::Catalogue,
-        Self::Random,
-        Self::Jerks,
-        Self::Closed,
-        Self::Tasks,
-        Self::Distances,
-    ];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Catalogue, Self::Random, Self::Jerks, Self::Closed, Self::Tasks, Self::Distances];
 
     pub(crate) fn name(self) -> &'static str {
         match self {

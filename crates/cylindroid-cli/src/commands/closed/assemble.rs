@@ -109,7 +109,7 @@ fn goal(job: &Job<'_>, to: &Joints, degrees: bool) -> Result<continuation::Goal,
         });
     };
     // What is not named stays as guessed.
-    let target = to.configuration(job.mechanism, degrees)?;
+    let target = to.configuration(job.mechanism, None, degrees)?;
     job.mechanism.check_q("--to", &target)?;
     let mut goal = continuation::Goal { places: Vec::new(), values: Vec::new() };
     for (name, _) in pairs {

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
             axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
             held: at.chain(free).collect(),
             end_effector: Some(frame),
-            start: Some(args.q.configuration(&robot, false)?),
+            start: Some(args.q.configuration(&robot, args.model.srdf.as_deref(), false)?),
             starts: args.starts,
             seed: args.seed,
             loci: !args.no_loci,

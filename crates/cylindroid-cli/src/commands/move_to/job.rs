@@ -84,7 +84,7 @@ impl Job {
         let from = pose(&start)?;
         let (target_pose, goal, controlled) = if let Some(q) = &args.path.joint_to {
             no_loops(&robot)?;
-            let q = q.configuration(&robot, degrees)?;
+            let q = q.configuration(&robot, args.configuration.model.srdf.as_deref(), degrees)?;
             robot.check_q("--joint-to", &q)?;
             within_limits(&robot, "--joint-to", &q)?;
             let motion = Box::new(JointMove::within_limits(&robot, &start, &q, &defaults)?);
@@ -159,6 +159,7 @@ fn apply(args: &ServoArgs, options: &mut ServoOptions) -> Result<()> {
     set(&mut options.tolerance.position, args.tolerance_position);
     set(&mut options.tolerance.orientation, args.tolerance_orientation);
     set(&mut options.acceleration, args.acceleration);
+    set(&mut options.jerk, args.jerk);
     set(&mut options.length, args.length);
     options.plant = args.plant();
     match &args.joint_weights {

@@ -146,7 +146,11 @@ impl Servo {
         let own = chain.coordinates().iter().map(|&c| mechanism.coordinates()[c].limits);
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))
-            .map(|l| limits_of_servo(l, &options.plant, options.acceleration, options.jerk))
+            .map(|l| {
+                let gain = options.gain.position.max(options.gain.orientation);
+                let [a, jerk] = [options.acceleration, options.jerk];
+                limits_of_servo(l, &options.plant, [a, jerk], gain)
+            })
             .collect();
         let space = TaskSpace::new(options.scaling(), &chain, &limits);
         let margin =

@@ -170,7 +170,8 @@ impl JerkLimitedStop {
         let mut way = self.rising_way(rising);
         if steady > 0.0 {
             let loss = self.most * self.dt;
-            way += sign * self.dt * (steady * self.peak.abs() - 0.5 * loss * steady * (steady + 1.0));
+            way +=
+                sign * self.dt * (steady * self.peak.abs() - 0.5 * loss * steady * (steady + 1.0));
         }
         if falling > 0.0 {
             let i = falling;
@@ -248,11 +249,17 @@ mod tests {
                 let now = JerkLimitedStop::new(&limits, v, a, dt);
                 let rest = stop.way(f64::INFINITY) - q;
                 let scale = 1.0 + range.highest - range.lowest;
-                assert!((now.way(f64::INFINITY) - rest).abs() < 1e-9 * scale, "{now:?} of {stop:?}");
+                assert!(
+                    (now.way(f64::INFINITY) - rest).abs() < 1e-9 * scale,
+                    "{now:?} of {stop:?}"
+                );
                 let new = now.next();
                 let change = (new - v) / dt;
                 assert!(change.abs() <= most.max(a0.abs()) * (1.0 + 1e-9), "{now:?}");
-                assert!((change - a).abs() <= jerk * dt * (1.0 + 1e-6) + 1e-9, "{a} {change} {now:?}");
+                assert!(
+                    (change - a).abs() <= jerk * dt * (1.0 + 1e-6) + 1e-9,
+                    "{a} {change} {now:?}"
+                );
                 (v, a, q) = (new, change, q + new * dt);
                 steps += 1.0;
                 if round % 7 == 0 || steps < 4.0 {
@@ -266,7 +273,10 @@ mod tests {
             let scale = 1e-9 * (1.0 + highest - lowest);
             assert!((lowest - range.lowest).abs() < scale, "{lowest} {range:?} {stop:?}");
             assert!((highest - range.highest).abs() < scale, "{highest} {range:?} {stop:?}");
-            assert!((speed - range.speed).abs() < 1e-9 * (1.0 + speed), "{speed} {range:?} {stop:?}");
+            assert!(
+                (speed - range.speed).abs() < 1e-9 * (1.0 + speed),
+                "{speed} {range:?} {stop:?}"
+            );
         }
         assert!(longest > 1000.0);
     }

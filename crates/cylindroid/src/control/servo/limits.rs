@@ -42,8 +42,11 @@ pub struct JointState {
 /// largest change.
 const BISECTIONS: usize = 48;
 
-/// Share of a distance that sums over the steps of a stop may round away [-].
-const JERK_ROUNDING: f64 = 1e-12;
+/// Share of a distance or a velocity that sums over the steps of a stop may round away [-].
+const JERK_ROUNDING: f64 = 1e-11;
+
+/// Steps on the way to a limit whose roundings of the position may add up.
+const STEPS_TO_LIMIT: f64 = 500.0;
 
 impl VelocityBounds {
     /// The velocity bounds of a joint for the next step of `dt` seconds, from its position,
@@ -85,9 +88,18 @@ impl VelocityBounds {
         let braking = JerkLimitedStop::new(limits, velocity, acceleration, dt).next();
         // The ends for motions upwards, and downwards with all signs changed.
         let end = |sign: f64, limit: f64| {
-            let (v, a, brake) = (sign * velocity, sign * acceleration, sign * braking);
-            let room = distance_to_limit(sign * (limit - position), position, limit);
-            let room = room - JERK_ROUNDING * (v.abs() * dt + room.min(f64::MAX));
+            let (v, a, mut brake) = (sign * velocity, sign * acceleration, sign * braking);
+            if brake > limits.velocity && brake <= limits.velocity * (1.0 + JERK_ROUNDING) {
+                brake = limits.velocity;
+            }
+            let most_room = distance_to_limit(sign * (limit - position), position, limit);
+            // The roundings of all steps to the limit are kept free at first.
+            let room = if most_room == f64::INFINITY {
+                most_room
+            } else {
+                let size = 1.0 + position.abs() + limit.abs();
+                most_room - JERK_ROUNDING * most_room - STEPS_TO_LIMIT * LIMIT_ROUNDING * size
+            };
             let faster = stopping_velocity((limits.velocity - v).max(0.0), limits.jerk, dt) * dt;
             let candidates = [
                 (v + faster, LimitKind::Velocity),
@@ -98,15 +110,17 @@ impl VelocityBounds {
             let [first, ..] = candidates;
             let least = |x: (f64, LimitKind), y: (f64, LimitKind)| if y.0 < x.0 { y } else { x };
             let (most, cause) = candidates.into_iter().fold(first, least);
-            let highest = |v: f64, a: f64| {
-                dt * v + JerkLimitedStop::new(limits, v, a, dt).range().highest
-            };
+            let highest =
+                |v: f64, a: f64| dt * v + JerkLimitedStop::new(limits, v, a, dt).range().highest;
             let fits = |new: f64| highest(new, (new - v) / dt) <= room;
+            let brake_fits = |brake: f64| highest(brake, (brake - v) / dt) <= most_room;
             if most <= brake || room == f64::INFINITY || fits(most) {
                 return (most.max(brake), cause);
             }
             let end = if fits(brake) {
                 largest(brake, most, fits)
+            } else if brake_fits(brake) {
+                brake
             } else {
                 // Positions take precedence if a measured state contradicts the others.
                 brake.min(largest(0.0, brake.max(0.0), |new| highest(new, 0.0) <= room))
@@ -122,6 +136,36 @@ impl VelocityBounds {
             (-lower, upper)
         };
         Self { lower, upper, lower_cause, upper_cause }
+    }
+
+    /// The same for a joint that is to move with a `desired` velocity: with a jerk limit no velocity is
+    /// commanded from which the acceleration cannot end there. Otherwise velocities swing about it.
+    #[must_use]
+    pub(in crate::control) fn towards(
+        mut self,
+        desired: f64,
+        limits: &Limits,
+        now: JointState,
+        dt: f64,
+    ) -> Self {
+        if limits.jerk == f64::INFINITY || !desired.is_finite() {
+            return self;
+        }
+        let (gap, change) = (desired - now.velocity, limits.jerk * dt * dt);
+        let end = now.velocity + (stopping_velocity(gap.abs(), limits.jerk, dt) * dt).copysign(gap);
+        let steady = now.velocity + now.acceleration * dt;
+        if gap >= 0.0 {
+            let end = end.max(steady - change).max(self.lower);
+            if end < self.upper {
+                (self.upper, self.upper_cause) = (end, LimitKind::Jerk);
+            }
+        } else {
+            let end = end.min(steady + change).min(self.upper);
+            if end > self.lower {
+                (self.lower, self.lower_cause) = (end, LimitKind::Jerk);
+            }
+        }
+        self
     }
 
     /// The bounds of a passive joint: it brakes before its position limits, but its velocity
@@ -171,13 +215,14 @@ impl VelocityBounds {
     }
 }
 
-/// The limits of a joint of a servo: those of the model within the margins of the plant, where it has
-/// no acceleration or jerk limit those of the options.
+/// The limits of a joint of a servo with this gain: those of the model within the margins of the plant,
+/// where it has no acceleration or jerk limit those of the options. The acceleration is bounded such
+/// that the jerk ends it in half of the time 1/gain: otherwise the tool swings about its target.
 pub(in crate::control) fn limits_of_servo(
     mut own: Limits,
     plant: &Plant,
-    acceleration: f64,
-    jerk: f64,
+    [acceleration, jerk]: [f64; 2],
+    gain: f64,
 ) -> Limits {
     plant.keep_off(&mut own);
     let or = |own: &mut f64, other: f64| {
@@ -187,6 +232,9 @@ pub(in crate::control) fn limits_of_servo(
     };
     or(&mut own.acceleration, acceleration);
     or(&mut own.jerk, jerk);
+    if own.jerk < f64::INFINITY && gain > 0.0 {
+        own.acceleration = own.acceleration.min(0.5 * own.jerk / gain);
+    }
     own
 }
 
@@ -214,8 +262,8 @@ pub(in crate::control) fn acceleration_of(
 ) -> f64 {
     const MORE: f64 = 1.0 + 1e-6;
     let now = change / dt;
-    let is_within = now.abs() <= MORE * limits.acceleration
-        && (now - before).abs() <= MORE * limits.jerk * dt;
+    let is_within =
+        now.abs() <= MORE * limits.acceleration && (now - before).abs() <= MORE * limits.jerk * dt;
     if is_within { now } else { 0.0 }
 }
 
@@ -298,7 +346,11 @@ mod tests {
             let rate = bounds.upper;
             assert!((rate - now.velocity).abs() <= limits.acceleration * dt * (1.0 + 1e-12));
             assert!(rate.abs() <= limits.velocity);
-            now = JointState { position: now.position + rate * dt, velocity: rate, acceleration: 0.0 };
+            now = JointState {
+                position: now.position + rate * dt,
+                velocity: rate,
+                acceleration: 0.0,
+            };
             assert!(now.position <= limits.upper, "{}", now.position);
         }
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
@@ -346,10 +398,15 @@ mod tests {
                     for i in 1..200 {
                         let (share, dt) = (f64::from(i) * 0.005, 0.0007 * f64::from(i));
                         let start = lower + share * (upper - lower);
-                        let mut now = JointState { position: start, velocity: 0.0, acceleration: 0.0 };
+                        let mut now =
+                            JointState { position: start, velocity: 0.0, acceleration: 0.0 };
                         for _ in 0..40 {
                             let rate = VelocityBounds::next(&limits, now, dt).upper;
-                            now = JointState { position: now.position + rate * dt, velocity: rate, acceleration: 0.0 };
+                            now = JointState {
+                                position: now.position + rate * dt,
+                                velocity: rate,
+                                acceleration: 0.0,
+                            };
                             assert!(now.position <= upper, "{} of {limits:?}", now.position);
                         }
                     }

@@ -8,8 +8,8 @@
 //!          in full
 //! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs
 
-use super::stopping::stopping_velocity;
 use super::sensor_fit::SensorFit;
+use super::stopping::stopping_velocity;
 use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, assemble};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::error::{Error, Result};

@@ -32,12 +32,12 @@ mod twist_step;
 
 pub(super) use coupled::least_acceleration;
 pub(super) use jerk_limited_stop::JerkLimitedStop;
-pub(super) use stopping::jerk_limited_stopping_velocity;
 pub(super) use limits::{acceleration_of, limits_of_servo};
 pub(super) use loop_motions::{LoopMotions, limits_of_loop_joints, nothing_actuated};
 pub(super) use plant::{Predictor, SimulatedRobot};
 pub(super) use secondary::{SecondaryVelocities, add_posture};
 pub(super) use stall::{BrakingState, StallDetector};
+pub(super) use stopping::jerk_limited_stopping_velocity;
 pub(super) use task_space::is_locked;
 
 pub use controller::Servo;

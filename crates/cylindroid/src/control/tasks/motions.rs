@@ -172,6 +172,14 @@ impl Motions {
         }
     }
 
+    /// False for the passive joints of a closed chain.
+    pub(super) fn is_actuated(&self, i: usize) -> bool {
+        match self {
+            Self::Tree(_) => true,
+            Self::Loops(loops) => loops.coupling.is_actuated[i],
+        }
+    }
+
     /// The bounds of joint `i` for the next step.
     pub(super) fn bounds(
         &self,
@@ -181,7 +189,7 @@ impl Motions {
         dt: f64,
     ) -> VelocityBounds {
         match self {
-            Self::Loops(loops) if !loops.coupling.is_actuated[i] => {
+            Self::Loops(loops) if !self.is_actuated(i) => {
                 let mut bounds = VelocityBounds::passive(limits, now, dt);
                 loops.motions.bound_passive(i, loops.acceleration, dt, &mut bounds);
                 bounds

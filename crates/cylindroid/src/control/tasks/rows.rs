@@ -20,14 +20,42 @@ const BRAKING: f64 = 0.5;
 const ROUNDING: f64 = 1e-6;
 
 impl TaskServo {
-    /// Limits of the joints, and the unknowns of the last velocities.
-    pub(super) fn load_bounds(&mut self) {
+    /// Solves for the joint velocities. With limits of the jerk twice: for those that the tasks ask for,
+    /// then for those of this step on the way to them.
+    pub(super) fn solve_within_limits(&mut self) {
+        if let Some(mut desired) = self.desired_rates.take() {
+            self.load_bounds(None);
+            self.solve();
+            desired.copy_from_slice(&self.rates);
+            self.motions.velocities(&self.last, &self.bounds, &mut desired);
+            self.load_bounds(Some(&desired));
+            self.desired_rates = Some(desired);
+        }
+        self.solve();
+    }
+
+    /// Limits of the joints, and the unknowns of the last velocities; where joints have limits of the
+    /// jerk, on the way to the `desired` velocities, or of positions and speeds alone.
+    pub(super) fn load_bounds(&mut self, desired: Option<&[f64]>) {
         let are_units = self.motions.limit_rows() == 0;
         for (i, limits) in self.limits.iter().enumerate() {
             let position = self.state.q().get(i).copied().unwrap_or(0.0);
             let (velocity, acceleration) = (self.rates[i], self.accelerations[i]);
             let now = JointState { position, velocity, acceleration };
-            let bound = self.motions.bounds(i, limits, now, self.options.dt);
+            let has_jerk = limits.jerk < f64::INFINITY && self.motions.is_actuated(i);
+            let dt = self.options.dt;
+            let bound = match desired {
+                _ if !has_jerk => self.motions.bounds(i, limits, now, dt),
+                None => {
+                    let (acceleration, jerk) = (f64::INFINITY, f64::INFINITY);
+                    let wide = Limits { acceleration, jerk, ..*limits };
+                    self.motions.bounds(i, &wide, now, dt)
+                }
+                Some(desired) => {
+                    let bound = self.motions.bounds(i, limits, now, dt);
+                    bound.towards(desired[i], limits, now, dt)
+                }
+            };
             self.bounds[i] = bound;
             let inequalities = &mut self.set.inequalities;
             if are_units {
@@ -91,7 +119,9 @@ impl TaskServo {
         }
         let entries = &self.entries;
         let dt = self.options.dt;
-        let most = |of: fn(&Limits) -> f64| BRAKING * motions.largest_change(|j| entries[j], &self.limits, of);
+        let most = |of: fn(&Limits) -> f64| {
+            BRAKING * motions.largest_change(|j| entries[j], &self.limits, of)
+        };
         let (acceleration, jerk) = (most(|l| l.acceleration), most(|l| l.jerk));
         let (second_order, reach) = (self.second_order(), self.state.mechanism().reach());
         let row = self.motions.limit_rows() + place;

@@ -118,6 +118,8 @@ pub struct TaskServo {
     pub(super) before: Vec<f64>,
     /// Changes of the velocities in the last step, divided by its duration.
     pub(super) accelerations: Vec<f64>,
+    /// With limits of the jerk, the velocities that the tasks ask for.
+    pub(super) desired_rates: Option<Vec<f64>>,
     pub(super) braking: BrakingPath,
     pub(super) lowest_velocities: Vec<f64>,
     reports: Vec<TaskReport>,
@@ -142,8 +144,13 @@ impl TaskServo {
         let own = mechanism.coordinates().iter().map(|c| c.limits);
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))
-            .map(|l| limits_of_servo(l, &options.plant, options.acceleration, options.jerk))
+            .map(|l| {
+                let gain = tasks.iter().map(|task| task.gain).fold(0.0, f64::max);
+                limits_of_servo(l, &options.plant, [options.acceleration, options.jerk], gain)
+            })
             .collect();
+        let has_jerks = limits.iter().any(|l| l.jerk < f64::INFINITY);
+        let desired_rates = has_jerks.then(|| vec![0.0; limits.len()]);
         let motions = Motions::new(mechanism, &options, &limits)?;
         let (u, v) = (motions.unknowns(), limits.len());
         let rows = tasks
@@ -222,6 +229,7 @@ impl TaskServo {
             rates: vec![0.0; v],
             before: vec![0.0; v],
             accelerations: vec![0.0; v],
+            desired_rates,
             braking: BrakingPath::new(mechanism, capacity)?,
             lowest_velocities: vec![0.0; n],
             reports: vec![report; tasks.len()],
@@ -359,10 +367,10 @@ impl TaskServo {
             }
         }
         self.motions.load(&self.rows, self.options.length, self.options.dt)?;
-        self.load_bounds();
+        self.load_bounds(None);
         self.load_distances()?;
         self.load_desired();
-        self.solve();
+        self.solve_within_limits();
         Error::check_finite("joint velocities", &self.last)?;
         let braking = self.store()?;
         if let Some(predictor) = &mut self.predictor {

@@ -19,7 +19,8 @@ fn slides(accelerations: [f64; 2]) -> Mechanism {
         let mut joint = JointSpec::new(name, JointKind::Prismatic, ends[0], ends[1]);
         joint.axis = [Vec3::X, Vec3::Y][i];
         let acceleration = accelerations[i];
-        joint.limits = Limits { lower: -2.0, upper: 2.0, velocity: 3.0, acceleration, ..Limits::NONE };
+        joint.limits =
+            Limits { lower: -2.0, upper: 2.0, velocity: 3.0, acceleration, ..Limits::NONE };
         builder.joint(joint);
     }
     builder.build().unwrap()

@@ -1,7 +1,9 @@
 //! Limits of the jerk: kept in every step, with the targets reached.
 
-use super::*;
+use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions};
 use cylindroid::model::JointLimits;
+
+use super::*;
 
 /// Accelerations and jerks of published arms.
 fn panda() -> Mechanism {
@@ -12,8 +14,8 @@ fn panda() -> Mechanism {
         .iter()
         .zip(jerks)
         .map(|(c, jerk)| {
-            // A hundredth, so that it counts at the usual gains.
-            (c.name.as_str(), JointLimits { jerk: Some(0.01 * jerk), ..JointLimits::default() })
+            // A twentieth, so that it counts at the usual gains.
+            (c.name.as_str(), JointLimits { jerk: Some(0.05 * jerk), ..JointLimits::default() })
         })
         .collect();
     panda.with_limits(&limits).unwrap()
@@ -96,8 +98,14 @@ fn joints_stop_at_their_limits_within_the_jerk() {
 /// A joint that a push leaves too near to its limit stops there, whatever its jerk.
 #[test]
 fn positions_take_precedence_after_a_push() {
-    let limits =
-        Limits { lower: -1.0, upper: 1.0, velocity: 1.5, acceleration: 5.0, jerk: 10.0, ..Limits::NONE };
+    let limits = Limits {
+        lower: -1.0,
+        upper: 1.0,
+        velocity: 1.5,
+        acceleration: 5.0,
+        jerk: 10.0,
+        ..Limits::NONE
+    };
     for (position, velocity) in [(0.999, 1.0), (-0.9999, -1.2), (1.001, 0.4), (1.0, 0.0)] {
         let dt = 1e-3;
         let mut now = JointState { position, velocity, acceleration: 0.0 };
@@ -110,7 +118,11 @@ fn positions_take_precedence_after_a_push() {
             assert!((next.abs() - 1.0).max(0.0) <= outside, "{now:?} {v}");
             let a = (v - now.velocity) / dt;
             let is_jump = (a - now.acceleration).abs() > 10.0 * dt * (1.0 + 1e-6);
-            now = JointState { position: next, velocity: v, acceleration: if is_jump { 0.0 } else { a } };
+            now = JointState {
+                position: next,
+                velocity: v,
+                acceleration: if is_jump { 0.0 } else { a },
+            };
         }
     }
 }

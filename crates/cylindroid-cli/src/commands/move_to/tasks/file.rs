@@ -215,7 +215,10 @@ impl Entry {
             }
             "posture" => {
                 let q = self.q.clone().map(Joints::from).unwrap_or(Joints::Home);
-                (TaskObjective::Posture { q: q.configuration(robot, false)? }, "posture".into())
+                (
+                    TaskObjective::Posture { q: q.configuration(robot, None, false)? },
+                    "posture".into(),
+                )
             }
             "manipulability" => {
                 let task = Task::named(self.components.as_deref().unwrap_or("pose"), robot)?;

@@ -166,6 +166,7 @@ fn options(args: &MoveArgs, robot: &Mechanism) -> anyhow::Result<TaskServoOption
     set(&mut options.dt, args.servo.dt);
     set(&mut options.length, args.servo.length);
     set(&mut options.acceleration, args.servo.acceleration);
+    set(&mut options.jerk, args.servo.jerk);
     options.plant = args.servo.plant();
     options.keep_directions = !args.tasks.least_squares;
     set(&mut options.eps, args.inverse.named.parameters.0.get("eps").copied());
@@ -188,7 +189,11 @@ fn options(args: &MoveArgs, robot: &Mechanism) -> anyhow::Result<TaskServoOption
         {
             anyhow::bail!("--gap and --margin = {value} cannot be used: {reason}");
         }
-        let model = collision_model(robot, &args.tasks.collision)?;
+        let model = collision_model(
+            robot,
+            &args.tasks.collision,
+            args.configuration.model.srdf.as_deref(),
+        )?;
         options.collisions = Some(CollisionAvoidance { model, gap, margin });
     } else if let Some(option) = args.tasks.without_effect() {
         anyhow::bail!("{option} has no effect without --avoid or --obstacle");

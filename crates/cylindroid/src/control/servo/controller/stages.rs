@@ -282,6 +282,10 @@ impl Servo {
                 Some(coupled) => coupled.bounds(i, (limits, least), now, dt),
                 None => VelocityBounds::next(limits, now, dt),
             };
+            if self.coupled.as_ref().is_none_or(|coupled| coupled.coupling.is_actuated[i]) {
+                let desired = (self.primary[i] + self.secondary[i]) * self.space.columns[i];
+                bound = bound.towards(desired, limits, now, dt);
+            }
             self.own_bounds[i] = bound;
             bound.lower = self.space.scaled_rate(i, bound.lower);
             bound.upper = self.space.scaled_rate(i, bound.upper);

@@ -129,7 +129,11 @@ impl Reader<'_> {
             return Ok(limits);
         };
         let at = node.range().start;
-        self.leftovers(node, &["lower", "upper", "velocity", "acceleration", "jerk", "effort"], &[]);
+        self.leftovers(
+            node,
+            &["lower", "upper", "velocity", "acceleration", "jerk", "effort"],
+            &[],
+        );
         let (lower, upper) = (self.bound(node, "lower")?, self.bound(node, "upper")?);
         let velocity = self.largest(node, "velocity", name)?;
         let effort = self.largest(node, "effort", name)?;

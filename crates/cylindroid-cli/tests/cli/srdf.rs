@@ -1,0 +1,62 @@
+//! `--srdf`, `--group` and states of an SRDF, for all commands that take a model.
+
+use std::fs;
+
+use crate::{json, numbers, refused};
+
+const TEXT: &str = r#"<robot name="panda">
+  <group name="forearm"><chain base_link="panda_link4" tip_link="panda_link7"/></group>
+  <group_state name="up" group="forearm">
+    <joint name="panda_joint6" value="2.5"/><joint name="panda_joint7" value="-0.3"/>
+  </group_state>
+</robot>"#;
+
+fn with_file(run: impl Fn(&str)) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("panda.srdf");
+    fs::write(&file, TEXT).unwrap();
+    run(file.to_str().unwrap());
+}
+
+/// The group is a robot of its own: its tool is where that of the whole robot's link is.
+#[test]
+fn a_group_is_a_robot_of_its_own() {
+    with_file(|file| {
+        let group = ["--srdf", file, "--group", "forearm"];
+        let info = json(&[&["info", "panda"][..], &group].concat(), 0);
+        assert_eq!((&info["n"], &info["tool"]), (&3.into(), &"panda_link7".into()));
+        let part = json(&[&["fk", "panda", "--q", "up"][..], &group].concat(), 0);
+        let state = ["--srdf", file, "--frame", "panda_link7", "--q", "up"];
+        let whole = json(&[&["fk", "panda"][..], &state].concat(), 0);
+        for (a, b) in numbers(&part["position"]).iter().zip(numbers(&whole["position"])) {
+            assert!((a - b).abs() < 1e-14, "{part} {whole}");
+        }
+        // From that state to another one.
+        let to = ["move", "panda", "--q", "up", "--joint-to", "home"];
+        let moved = json(&[&to[..], &group].concat(), 0);
+        assert_eq!(numbers(&moved["q"]).len(), 3);
+    });
+}
+
+#[test]
+fn groups_and_states_without_sense_are_refused() {
+    with_file(|file| {
+        let wrong = refused(&["info", "panda", "--srdf", file, "--group", "forarm"]);
+        assert!(wrong.contains("nearest: forearm"), "{wrong}");
+        let wrong = refused(&["fk", "panda", "--srdf", file, "--q", "upp"]);
+        assert!(wrong.contains("nearest: up"), "{wrong}");
+        let alone = refused(&["fk", "panda", "--q", "up"]);
+        assert!(alone.contains("'up'") || alone.contains("= up"), "{alone}");
+        assert!(alone.contains("--srdf"), "{alone}");
+        let alone = refused(&["info", "panda", "--group", "forearm"]);
+        assert!(alone.contains("--srdf"), "{alone}");
+        let designs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/designs.toml");
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let out = out.to_str().unwrap();
+        let over = ["sweep", designs, "--over", "crank=0.4:0.6:2", "--out", out];
+        let group = ["--srdf", file, "--group", "forearm"];
+        let refused = refused(&[&over[..], &group].concat());
+        assert!(refused.contains("--group"), "{refused}");
+    });
+}
