@@ -4,6 +4,7 @@
 mod bench_control;
 mod bench_peers;
 mod book;
+mod c_install;
 mod corpus;
 mod deny;
 mod fuzz;
@@ -35,6 +36,8 @@ cargo xtask <task>
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
   viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
             the server, --picture draws the picture of the README
+  c-install DIR
+            builds the C library and installs it with headers and files for CMake and pkg-config
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
             PyPI and the npm registry); --serve shows it while you write, --outputs writes what
             its commands and its Python print into the pages
@@ -102,6 +105,7 @@ fn run() -> Result<()> {
         Some("corpus") => corpus::compare(),
         Some("python") => python::test(),
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
+        Some("c-install") => c_install::install(std::env::args().nth(2).as_deref()),
         Some("book") => book::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
         Some("python-names") => python_names::check(),

@@ -30,8 +30,8 @@ static void errors(const cyl_mechanism *robot) {
     EXPECT(cyl_load("panda", NULL) == CYL_NULL_OR_TEXT);
     EXPECT(cyl_load("\xff\xfe", &none) == CYL_NULL_OR_TEXT);
     size_t index = 7;
-    EXPECT(cyl_frame(robot, "panda_hnd", &index) == CYL_UNKNOWN_NAME && index == 7);
-    EXPECT(strstr(cyl_last_error(), "panda_hand") != NULL);
+    EXPECT(cyl_frame(robot, "hand_tpc", &index) == CYL_UNKNOWN_NAME && index == 7);
+    EXPECT(strstr(cyl_last_error(), "hand_tcp") != NULL);
     cyl_state *state = NULL;
     CHECK(cyl_state_new(robot, &state));
     double q[7] = {0.0}, pose[16];
@@ -100,8 +100,8 @@ int main(void) {
     EXPECT(cyl_n(robot) == 7 && strcmp(cyl_coordinate_name(robot, 0), "panda_joint1") == 0);
     EXPECT(cyl_coordinate_name(robot, 7) == NULL && cyl_frame_name(robot, 100000) == NULL);
     size_t hand = 0;
-    CHECK(cyl_frame(robot, "panda_hand", &hand));
-    EXPECT(strcmp(cyl_frame_name(robot, hand), "panda_hand") == 0 && hand < cyl_frame_count(robot));
+    CHECK(cyl_frame(robot, "hand_tcp", &hand));
+    EXPECT(strcmp(cyl_frame_name(robot, hand), "hand_tcp") == 0 && hand < cyl_frame_count(robot));
     cyl_limits limits;
     CHECK(cyl_coordinate_limits(robot, 3, &limits));
     EXPECT(limits.lower < limits.upper && limits.upper < 0.0 && isinf(limits.jerk));

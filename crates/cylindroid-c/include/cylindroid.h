@@ -13,6 +13,10 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
+
+// Stands for the tool of a mechanism, or the reference of a closed chain.
+#define CYL_DEFAULT_FRAME SIZE_MAX
 
 
 
@@ -51,6 +55,16 @@ typedef enum cyl_servo_status {
   // No twist is commanded, or the last command is too old: the joints brake.
   CYL_BRAKING = 3,
 } cyl_servo_status;
+
+// The axes and the point of a Jacobian.
+typedef enum cyl_reference {
+  // Axes and origin of the frame.
+  CYL_LOCAL = 0,
+  // World axes, twist at the world's origin.
+  CYL_WORLD = 1,
+  // World axes, at the frame's origin.
+  CYL_LOCAL_WORLD_ALIGNED = 2,
+} cyl_reference;
 
 // Poses, Jacobians and measures of many configurations for one frame.
 typedef struct cyl_batch cyl_batch;

@@ -26,6 +26,7 @@ mod state;
 mod status;
 
 pub use analysis::*;
+pub use arguments::{CYL_DEFAULT_FRAME, cyl_reference};
 pub use batch::*;
 pub use ik::*;
 pub use mechanism::*;

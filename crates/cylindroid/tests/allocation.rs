@@ -139,6 +139,29 @@ fn frame(end_effector: EndEffector, components: Task, target: Pose) -> TaskObjec
     TaskObjective::Frame { end_effector, components, target: target.into() }
 }
 
+/// With limits of the jerk, which a servo of many tasks solves for twice.
+#[test]
+fn limits_of_the_jerk_allocate_nothing() {
+    let panda = catalogue::load("panda").unwrap();
+    let start = panda.state(panda.home()).unwrap().pose(panda.tool());
+    let target = Pose { translation: start.translation + Vec3::new(0.2, 0.3, -0.2), ..start };
+    let mut servo =
+        Servo::new(&panda, ServoOptions { jerk: 100.0, ..ServoOptions::new(&panda) }).unwrap();
+    let hand = frame(panda.tool().into(), Task::POSE, target);
+    let options = TaskServoOptions { jerk: 100.0, ..TaskServoOptions::new(&panda) };
+    let mut tasks = TaskServo::new(&panda, vec![MotionTask::new("hand", hand)], options).unwrap();
+    let (mut q, mut p) = (panda.home().to_vec(), panda.home().to_vec());
+    let counted = count(|| {
+        for _ in 0..1000 {
+            servo.step(&q, target).unwrap();
+            servo.advance(&mut q);
+            tasks.step(&p).unwrap();
+            tasks.advance(&mut p);
+        }
+    });
+    assert_eq!(counted, 0);
+}
+
 /// Behind drives that lag: towards a target and along a twist, of one task and of several, and of a
 /// closed chain with redundant sensors.
 #[test]

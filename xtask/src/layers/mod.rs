@@ -17,8 +17,9 @@ use self::graph::{Circle, circles};
 use self::source::{below, files, text_of};
 
 /// The roots of the crates.
-const CRATES: [&str; 4] = [
+const CRATES: [&str; 5] = [
     "crates/cylindroid/src/lib.rs",
+    "crates/cylindroid-c/src/lib.rs",
     "crates/cylindroid-cli/src/main.rs",
     "crates/cylindroid-py/src/lib.rs",
     "xtask/src/main.rs",

@@ -255,8 +255,7 @@ pub(crate) struct ServoArgs {
     #[arg(long, value_name = "A", allow_hyphen_values = true)]
     pub(crate) acceleration: Option<f64>,
 
-    /// Jerk limit of joints that have none in the model [rad/s^3 or m/s^3] [default: none; with
-    /// several tasks as well]
+    /// Jerk limit of joints that have none in the model [rad/s^3 or m/s^3] [default: none]
     #[arg(long, value_name = "J", allow_hyphen_values = true)]
     pub(crate) jerk: Option<f64>,
 

@@ -5,7 +5,7 @@ use std::fs;
 use crate::{json, numbers, refused};
 
 const TEXT: &str = r#"<robot name="panda">
-  <group name="forearm"><chain base_link="panda_link4" tip_link="panda_link7"/></group>
+  <group name="forearm"><chain base_link="link4" tip_link="link7"/></group>
   <group_state name="up" group="forearm">
     <joint name="panda_joint6" value="2.5"/><joint name="panda_joint7" value="-0.3"/>
   </group_state>
@@ -24,11 +24,13 @@ fn a_group_is_a_robot_of_its_own() {
     with_file(|file| {
         let group = ["--srdf", file, "--group", "forearm"];
         let info = json(&[&["info", "panda"][..], &group].concat(), 0);
-        assert_eq!((&info["n"], &info["tool"]), (&3.into(), &"panda_link7".into()));
+        assert_eq!((&info["n"], &info["tool"]), (&3.into(), &"link7".into()));
         let part = json(&[&["fk", "panda", "--q", "up"][..], &group].concat(), 0);
-        let state = ["--srdf", file, "--frame", "panda_link7", "--q", "up"];
+        let state = ["--srdf", file, "--frame", "link7", "--q", "up"];
         let whole = json(&[&["fk", "panda"][..], &state].concat(), 0);
-        for (a, b) in numbers(&part["position"]).iter().zip(numbers(&whole["position"])) {
+        for (a, b) in
+            numbers(&part["pose"]["position"]).iter().zip(numbers(&whole["pose"]["position"]))
+        {
             assert!((a - b).abs() < 1e-14, "{part} {whole}");
         }
         // From that state to another one.
@@ -55,7 +57,11 @@ fn groups_and_states_without_sense_are_refused() {
         let out = folder.path().join("out");
         let out = out.to_str().unwrap();
         let over = ["sweep", designs, "--over", "crank=0.4:0.6:2", "--out", out];
-        let group = ["--srdf", file, "--group", "forearm"];
+        let joints = ["left_drive", "left_elbow", "left_tip", "right_drive", "right_elbow"];
+        let all = [&joints[..], &["across"]].concat();
+        let joints: String = all.iter().map(|j| format!("<joint name=\"{j}\"/>")).collect();
+        fs::write(file, format!("<robot><group name=\"all\">{joints}</group></robot>")).unwrap();
+        let group = ["--srdf", file, "--group", "all"];
         let refused = refused(&[&over[..], &group].concat());
         assert!(refused.contains("--group"), "{refused}");
     });

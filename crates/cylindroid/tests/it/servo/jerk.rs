@@ -155,3 +155,36 @@ fn many_tasks_keep_jerks() {
     assert!(jerk < 1.0 + 1e-6 && jerk > 0.9, "{jerk}");
     assert!(acceleration < 1.0 + 1e-9, "{acceleration}");
 }
+
+/// Drives of closed chains keep their jerks; passive joints have none.
+#[test]
+fn drives_of_closed_chains_keep_jerks() {
+    for (name, way) in [("stewart", Vec3::Z * 0.05), ("five-bar", Vec3::X * 0.1)] {
+        let robot = cylindroid::load(name).unwrap();
+        let (dt, jerk) = (1e-3, 20.0);
+        let mut servo = servo(&robot, |o| {
+            (o.dt, o.jerk, o.acceleration) = (dt, jerk, 5.0);
+            if name == "five-bar" {
+                o.task = Task::POSITION;
+            }
+        });
+        let mut q = robot.home().to_vec();
+        let start = robot.state(&q).unwrap().pose(robot.reference());
+        let target = Pose { translation: start.translation + way, ..start };
+        let mut last = [vec![0.0; robot.n()], vec![0.0; robot.n()]];
+        let (mut status, mut steps, mut most) = (Status::Moving, 0, 0.0_f64);
+        while status == Status::Moving && steps < 8000 {
+            status = servo.step(&q, target).unwrap().status;
+            let now = servo.joint_velocities().to_vec();
+            for i in robot.actuated() {
+                let bend = now[i] - 2.0 * last[1][i] + last[0][i];
+                most = most.max(bend.abs() / (dt * dt));
+            }
+            last = [std::mem::take(&mut last[1]), now];
+            servo.advance(&mut q);
+            steps += 1;
+        }
+        assert_eq!(status, Status::Reached, "{name}: {:?}", servo.stall());
+        assert!(most < jerk * (1.0 + 1e-6) && most > 0.5 * jerk, "{name}: {most}");
+    }
+}
