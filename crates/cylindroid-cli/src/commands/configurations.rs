@@ -1,6 +1,6 @@
 //! The configurations of `sweep` and `optimise`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use cylindroid::sweep::{Axis, AxisKinds, Source};
 use cylindroid::{Error, Mechanism};
@@ -17,19 +17,34 @@ pub(crate) struct Chosen<'a> {
     pub(crate) seed: u64,
     pub(crate) configurations: Option<&'a PathBuf>,
     pub(crate) q: &'a Joints,
+    pub(crate) srdf: Option<&'a Path>,
 }
 
 impl<'a> From<&'a SweepArgs> for Chosen<'a> {
     fn from(args: &'a SweepArgs) -> Self {
-        let SweepArgs { over, samples, seed, configurations, q, .. } = args;
-        Self { over, samples: *samples, seed: *seed, configurations: configurations.as_ref(), q }
+        let SweepArgs { over, samples, seed, configurations, q, model, .. } = args;
+        Self {
+            over,
+            samples: *samples,
+            seed: *seed,
+            configurations: configurations.as_ref(),
+            q,
+            srdf: model.srdf.as_deref(),
+        }
     }
 }
 
 impl<'a> From<&'a OptimiseArgs> for Chosen<'a> {
     fn from(args: &'a OptimiseArgs) -> Self {
-        let OptimiseArgs { over, samples, seed, configurations, q, .. } = args;
-        Self { over, samples: *samples, seed: *seed, configurations: configurations.as_ref(), q }
+        let OptimiseArgs { over, samples, seed, configurations, q, model, .. } = args;
+        Self {
+            over,
+            samples: *samples,
+            seed: *seed,
+            configurations: configurations.as_ref(),
+            q,
+            srdf: model.srdf.as_deref(),
+        }
     }
 }
 
@@ -65,7 +80,7 @@ impl Chosen<'_> {
         if let Some(count) = self.samples {
             return Ok(Source::Samples { count: count.0, seed: self.seed });
         }
-        let rest = self.q.configuration(robot, false)?;
+        let rest = self.q.configuration(robot, self.srdf, false)?;
         Ok(match kinds.coordinates {
             axes if !axes.is_empty() => Source::Grid { axes, rest },
             _ if *self.q == Joints::Home => Source::Home,
