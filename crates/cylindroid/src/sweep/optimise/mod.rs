@@ -14,7 +14,7 @@
 //! // The length of a forearm for which an arm is isotropic at 135 degrees: 1 / sqrt 2.
 //! let text = "dimension = 2\nreference = 'hand'\nreference_point = ['1 + b', 0]\n\
 //!     [parameters]\nb = 0.9\n\
-//!     [[joint]]\nname = 'shoulder'\ntype = 'revolute'\nbetween = ['ground', 'arm']\n\
+//!     [[joint]]\nname = 'shoulder'\ntype = 'revolute'\nbetween = ['ground', 'arm']\norigin = [0, 0]\n\
 //!     [[joint]]\nname = 'elbow'\ntype = 'revolute'\nbetween = ['arm', 'hand']\norigin = [1, 0]\n";
 //! let model = ParametricModel::of_text(text, Path::new("arm.toml"), &[])?;
 //! let mut options = OptimisationOptions {
