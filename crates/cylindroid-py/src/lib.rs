@@ -16,6 +16,7 @@ mod ik;
 mod inverse;
 mod mechanism;
 mod motion;
+mod optimise;
 mod options;
 mod parameter_tables;
 mod screws;
@@ -71,6 +72,8 @@ mod _core {
     use crate::mechanism::{PyJoint, PyLoadReport, PyMechanism, PyParameter, PySrdf};
     #[pymodule_export]
     use crate::motion::{PyCartesianMove, PyCartesianPath, PyJointMove, PyTimeLaw, PyWaypointMove};
+    #[pymodule_export]
+    use crate::optimise::{PyOptimalDesigns, optimise};
     #[pymodule_export]
     use crate::parameter_tables::{inverse_methods, secondary_tasks};
     #[pymodule_export]

@@ -130,34 +130,18 @@ impl PySweepPlan {
     ) -> Result<Self> {
         let robot = &*mechanism;
         let mechanism = robot.inner.clone();
-        let over = over.as_ref().map_or(Ok(Vec::new()), axes)?;
         let ranges = vary.as_ref().map_or(Ok(Vec::new()), ranges)?;
-        let split = AxisKinds::of(over, &mechanism)?;
-        let space = match (split.parameters.is_empty(), ranges.is_empty()) {
-            (true, true) => None,
-            (false, true) => Some(DesignSpace::Grid(split.parameters)),
-            (true, false) => Some(DesignSpace::Samples { ranges, count: designs, seed }),
-            (false, false) => {
+        let sampled = !ranges.is_empty();
+        let (over, q) = (over.as_ref(), q.as_ref());
+        let chosen = Chosen { samples, seed, over, q, configurations, designs: sampled };
+        let (source, parameters) = chosen.source(robot)?;
+        let space = match (parameters.is_empty(), sampled) {
+            (true, false) => None,
+            (false, false) => Some(DesignSpace::Grid(parameters)),
+            (true, true) => Some(DesignSpace::Samples { ranges, count: designs, seed }),
+            (false, true) => {
                 let reason = "designs are a grid or samples: give parameters in over or in vary";
                 return Err(Failure::option("vary", "a dict", reason));
-            }
-        };
-        let rest = match &q {
-            None => Vec::new(),
-            Some(q) => q.vector(&mechanism, "q")?.to_vec(),
-        };
-        let grid = !split.coordinates.is_empty();
-        let source = match (samples, grid, configurations) {
-            (Some(count), false, None) => Source::Samples { count, seed },
-            (None, true, None) => Source::Grid { axes: split.coordinates, rest },
-            (None, false, Some(configurations)) => {
-                Source::Configurations(rows(robot, &configurations)?)
-            }
-            (None, false, None) if space.is_some() && rest.is_empty() => Source::Home,
-            (None, false, None) if space.is_some() => Source::Configurations(rest),
-            _ => {
-                let reason = "give one of samples, over and configurations";
-                return Err(Failure::option("samples", "", reason));
             }
         };
         let quantities = match quantities {
@@ -340,13 +324,13 @@ impl PySweepPlan {
 }
 
 /// Signals, Ctrl-C among them, are looked for a few times a second: false after one.
-fn go_on(raised: &mut Option<PyErr>) -> bool {
+pub(crate) fn go_on(raised: &mut Option<PyErr>) -> bool {
     let signals = Python::attach(|py| py.check_signals());
     *raised = signals.err();
     raised.is_none()
 }
 
-fn count_of(threads: Option<usize>) -> Result<Option<NonZeroUsize>> {
+pub(crate) fn count_of(threads: Option<usize>) -> Result<Option<NonZeroUsize>> {
     match threads.map(NonZeroUsize::new) {
         None => Ok(None),
         Some(Some(count)) => Ok(Some(count)),
@@ -370,6 +354,45 @@ fn columns_of(py: Python<'_>, table: Table) -> Result<Bound<'_, PyDict>> {
     Ok(columns)
 }
 
+/// The arguments that choose configurations.
+pub(crate) struct Chosen<'a, 'py> {
+    pub(crate) samples: Option<u64>,
+    pub(crate) seed: u64,
+    pub(crate) over: Option<&'a Bound<'py, PyDict>>,
+    pub(crate) q: Option<&'a Coordinates<'py>>,
+    pub(crate) configurations: Option<Bound<'py, PyAny>>,
+    /// Designs without other configurations have home, or `q`.
+    pub(crate) designs: bool,
+}
+
+impl Chosen<'_, '_> {
+    /// The configurations, and the axes of parameters.
+    pub(crate) fn source(self, robot: &PyMechanism) -> Result<(Source, Vec<Axis>)> {
+        let over = self.over.map_or(Ok(Vec::new()), axes)?;
+        let split = AxisKinds::of(over, &robot.inner)?;
+        let rest = match self.q {
+            None => Vec::new(),
+            Some(q) => q.vector(&robot.inner, "q")?.to_vec(),
+        };
+        let designs = self.designs || !split.parameters.is_empty();
+        let grid = !split.coordinates.is_empty();
+        let source = match (self.samples, grid, self.configurations) {
+            (Some(count), false, None) => Source::Samples { count, seed: self.seed },
+            (None, true, None) => Source::Grid { axes: split.coordinates, rest },
+            (None, false, Some(configurations)) => {
+                Source::Configurations(rows(robot, &configurations)?)
+            }
+            (None, false, None) if designs && rest.is_empty() => Source::Home,
+            (None, false, None) if designs => Source::Configurations(rest),
+            _ => {
+                let reason = "give one of samples, over and configurations";
+                return Err(Failure::option("samples", "", reason));
+            }
+        };
+        Ok((source, split.parameters))
+    }
+}
+
 pub(crate) fn axes(over: &Bound<'_, PyDict>) -> Result<Vec<Axis>> {
     over.iter()
         .map(|(name, values)| {
@@ -380,7 +403,7 @@ pub(crate) fn axes(over: &Bound<'_, PyDict>) -> Result<Vec<Axis>> {
         .collect()
 }
 
-fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
+pub(crate) fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
     vary.iter()
         .map(|(name, values)| {
             let name: String = entry("vary", &name)?;

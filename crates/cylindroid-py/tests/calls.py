@@ -42,6 +42,24 @@ SRDF = """<robot name="panda">
 <end_effector name="grip" parent_link="link7" group="hand" parent_group="forearm"/>
 <disable_collisions link1="link1" link2="link2" reason="Adjacent"/></robot>"""
 PLANAR = cy.load("3rrr")
+DESIGN = cy.parse("""
+dimension = 2
+reference = "hand"
+reference_point = ["1 + b", 0]
+parameters = { b = 0.9 }
+[[joint]]
+name = "shoulder"
+type = "revolute"
+between = ["ground", "arm"]
+origin = [0, 0]
+limits = { lower = -1, upper = 1 }
+[[joint]]
+name = "elbow"
+type = "revolute"
+between = ["arm", "hand"]
+origin = [1, 0]
+limits = { lower = 0.2, upper = 2 }
+""", "toml")
 GROUPS = cy.Srdf("panda.srdf", SRDF)
 POSE = PANDA.fk(PANDA.home)
 NEAR = PANDA.fk(PANDA.home + 0.05)
@@ -237,7 +255,7 @@ def calls():
         ("Servo", cy.Servo,
          {"mechanism": PANDA, "frame": "flange", "gain": [5.0, 4], "tool": np.eye(4), "dt": 0.01,
           "tolerance_position": 1e-4, "tolerance_orientation": 1e-3, "speed": 1.0,
-          "acceleration": 4.0, "delay": 0.02, "time_constant": 0.01, "noise": 1e-4,
+          "acceleration": 4.0, "jerk": 90.0, "delay": 0.02, "time_constant": 0.01, "noise": 1e-4,
           "command_timeout": 0.2,
           "limits": {"panda_joint1": {"velocity": 1.0}}, "length": 0.5,
           "joint_weights": np.ones(7), "secondary": "posture",
@@ -272,7 +290,7 @@ def calls():
           "collisions": cy.CollisionAvoidance(with_ball()),
           "half_spaces": [cy.HalfSpace("link4", [0.0, 0, -1], [0.0, 0, 1])],
           "limits": {"panda_joint1": {"velocity": 1.0}}, "dt": 0.01, "length": 0.5,
-          "joint_weights": np.ones(7), "acceleration": 4.0, "delay": 0.02,
+          "joint_weights": np.ones(7), "acceleration": 4.0, "jerk": 90.0, "delay": 0.02,
           "time_constant": 0.01, "noise": 1e-4, "eps": 0.01}),
         ("TaskServo.step", task_servo().step,
          {"q": PANDA.home, "targets": {"flange": (NEAR, TWIST), "posture": PANDA.home}}),
@@ -321,6 +339,17 @@ def calls():
          {"J": J, "task": TWIST, "max_joint_velocity": 0.5}),
         ("transversals", cy.transversals, {"lines": LINES_AS_COLUMNS, **SPACE}),
         ("velocity_conversion", cy.velocity_conversion, {"b_from_a": POSE}),
+        ("optimise", cy.optimise,
+         {"mechanism": DESIGN, "vary": {"b": (0.5, 1.0)}, "minimise": ["condition:mean"],
+          "maximise": "x", "designs": 3, "starts": 1, "evaluations": 9, "seed": 1, "samples": 2,
+          "frame": "hand", "tool": np.eye(4), "task": "x,y", "metric": "length", "length": 0.5,
+          "threads": 1}),
+        ("optimise", cy.optimise,
+         {"mechanism": DESIGN, "vary": {"b": (0.5, 1.0)}, "minimise": "condition", "designs": 3,
+          "over": {"elbow": (0.5, 1.0, 2)}, "q": DESIGN.home}),
+        ("optimise", cy.optimise,
+         {"mechanism": DESIGN, "vary": {"b": (0.5, 1.0)}, "minimise": "condition", "designs": 3,
+          "configurations": [[0.0, 1.0]]}),
         ("workspace_map", cy.workspace_map,
          {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
           "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,

@@ -459,3 +459,26 @@ def test_encoder_noise_does_not_stop_a_closed_chain():
         servo.step(q + 1e-4 * noise.standard_normal(five_bar.n), goal)
         q = servo.advance(q)
     assert np.linalg.norm(five_bar.fk(q, servo.frame)[:3, 3] - goal[:3, 3]) < 1e-3
+
+
+def test_limits_of_the_jerk():
+    panda = cy.load("panda").with_limits({"panda_joint2": {"jerk": 80.0}})
+    assert panda.jerk_limit[1] == 80.0 and np.isinf(panda.jerk_limit[0])
+    goal = panda.fk(panda.home)
+    goal[:3, 3] += [0.1, 0.15, -0.1]
+    task = cy.FrameTask("hand_tcp", goal)
+    dt, most = 0.002, np.full(7, 120.0)
+    most[1] = 80.0
+    for servo in cy.Servo(panda, dt=dt, jerk=120.0), cy.TaskServo(panda, [task], dt=dt, jerk=120.0):
+        q, velocities = panda.home, [np.zeros(7), np.zeros(7)]
+        for _ in range(2000):
+            step = servo.step(q, goal) if isinstance(servo, cy.Servo) else servo.step(q)
+            velocities.append(np.array(step))
+            q = servo.advance(q)
+        jerks = np.abs(np.diff(velocities, 2, axis=0)).max(axis=0) / dt**2
+        assert (jerks <= most * (1 + 1e-6)).all() and (jerks > 0.5 * most).any(), jerks
+        assert np.linalg.norm(panda.fk(q)[:3, 3] - goal[:3, 3]) < 1e-5
+    with pytest.raises(cy.InvalidOptionError, match="jerk"):
+        cy.Servo(panda, jerk=0.0)
+    with pytest.raises(cy.InvalidOptionError, match="jerk"):
+        panda.with_limits({"panda_joint2": {"jerk": 0.0}})

@@ -191,3 +191,53 @@ def test_wrong_designs_are_refused():
     limited = r.with_actuated(["left_drive", "right_drive"])
     with pytest.raises(cy.InvalidOptionError, match="changed after loading"):
         cy.sweep(limited, over={"crank": (0.4, 0.7, 4)}, quantities=["measures"])
+
+
+def test_optimal_designs():
+    r = cy.load(DESIGNS)
+    vary = {"crank": (0.3, 0.8), "point_x": (-0.1, 0.1)}
+    found = cy.optimise(r, vary, minimise="anisotropy", seed=1)
+    half = 0.6 / np.sqrt(2)
+    assert abs(found.best["crank"] - np.hypot(half - 0.3, 0.8 - half)) < 1e-6
+    assert list(found.designs) == ["crank", "point_x", "anisotropy:largest", "refined"]
+    assert abs(found.designs["anisotropy:largest"][0] - 1) < 1e-6 and found.designs["refined"].all()
+    assert found.evaluated == 64 + sum(r["evaluated"] for r in found.refinements)
+    assert all(r["converged"] and r["values"].keys() == vary.keys() for r in found.refinements)
+    best = cy.load(DESIGNS, parameters=found.best)
+    own = cy.sweep(best, configurations=[best.home], quantities=["measures"])
+    np.testing.assert_allclose(own["anisotropy"], found.designs["anisotropy:largest"], rtol=1e-12)
+    again = cy.optimise(r, vary, minimise=["anisotropy"], seed=1, threads=1)
+    assert again.best == found.best and "minimise anisotropy:largest" in repr(again)
+
+
+def test_trade_offs_of_designs():
+    r = cy.load(DESIGNS)
+    vary = {"crank": (0.3, 0.8), "rod": (0.5, 0.9)}
+    over = {"point_x": (-0.1, 0.1, 3)}
+    names = {"minimise": "anisotropy:mean", "maximise": ["type_ii"]}
+    found = cy.optimise(r, vary, **names, over=over, designs=32, starts=3, evaluations=100)
+    columns = found.designs
+    a, b = columns["anisotropy:mean"], columns["type_ii:smallest"]
+    assert len(a) > 3 and (np.diff(a) > 0).all() and (np.diff(b) > 0).all()
+    assert columns["refined"].any() and found.invalid > 0 and found.reason is not None
+    grid = {"crank": (columns["crank"][0],) * 2 + (1,), "rod": (columns["rod"][0],) * 2 + (1,)}
+    own = cy.sweep(r, over={**grid, **over}, quantities=["measures"])
+    np.testing.assert_allclose(own["anisotropy"].mean(), a[0], rtol=1e-12)
+    np.testing.assert_allclose(own["type_ii"].min(), b[0], rtol=1e-12)
+    none = cy.optimise(r, {"rod": (0.05, 0.06)}, minimise="anisotropy", designs=4)
+    assert none.best is None and none.invalid == 4 and len(none.designs["rod"]) == 0
+
+
+def test_wrong_objectives_are_refused():
+    r = cy.load(DESIGNS)
+    vary = {"crank": (0.3, 0.8)}
+    with pytest.raises(cy.InvalidOptionError, match="one index at least"):
+        cy.optimise(r, vary)
+    with pytest.raises(cy.UnknownNameError, match="nearest: anisotropy"):
+        cy.optimise(r, vary, minimise="anisotropi")
+    with pytest.raises(cy.UnknownNameError, match="statistic"):
+        cy.optimise(r, vary, maximise="anisotropy:most")
+    with pytest.raises(cy.ArgumentTypeError, match="minimise"):
+        cy.optimise(r, vary, minimise=3)
+    with pytest.raises(cy.InvalidOptionError, match="no parameters|parameter"):
+        cy.optimise(cy.load("panda"), vary, minimise="condition")

@@ -68,6 +68,7 @@ __all__ = [
     "OperationMode",
     "OperationModes",
     "OperatorAuthority",
+    "OptimalDesigns",
     "Parameter",
     "PitchConics",
     "PointDirection",
@@ -125,6 +126,7 @@ __all__ = [
     "log_derivative",
     "lowered",
     "oblique",
+    "optimise",
     "parse",
     "pinv",
     "pitch_form",
@@ -2018,6 +2020,23 @@ class Transversals:
     def at_infinity(self) -> _Array: ...
 
 @final
+class OptimalDesigns:
+    @property
+    def best(self) -> dict[str, float] | None: ...
+    @property
+    def designs(self) -> dict[str, _Array]: ...
+    @property
+    def refinements(self) -> list[dict[str, Any]]: ...
+    @property
+    def evaluated(self) -> int: ...
+    @property
+    def invalid(self) -> int: ...
+    @property
+    def without_index(self) -> int: ...
+    @property
+    def reason(self) -> str | None: ...
+
+@final
 class WorkspaceMap:
     @property
     def axes(self) -> dict[str, tuple[float, float, int]]: ...
@@ -2105,6 +2124,26 @@ def oblique(
     center: ArrayLike | None = None,
     noise: float | None = None,
 ) -> Inverse: ...
+def optimise(
+    mechanism: Mechanism,
+    vary: dict[str, tuple[float, float]],
+    minimise: str | Sequence[str] | None = None,
+    maximise: str | Sequence[str] | None = None,
+    designs: int = 64,
+    starts: int = 4,
+    evaluations: int = 2000,
+    seed: int = 0,
+    samples: int | None = None,
+    over: dict[str, tuple[float, float, int]] | None = None,
+    q: ArrayLike | None = None,
+    configurations: Any = None,
+    frame: str | None = None,
+    tool: ArrayLike | None = None,
+    task: str | None = None,
+    metric: str = "unit",
+    length: float | None = None,
+    threads: int | None = None,
+) -> OptimalDesigns: ...
 def parse(
     text: str,
     format: str = "urdf",
