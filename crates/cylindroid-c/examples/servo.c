@@ -36,6 +36,7 @@ static void errors(const cyl_mechanism *robot) {
     CHECK(cyl_state_new(robot, &state));
     double q[7] = {0.0}, pose[16];
     EXPECT(cyl_state_set(state, q, 6) == CYL_DIMENSION);
+    EXPECT(cyl_state_set(state, q, SIZE_MAX) == CYL_DIMENSION);
     q[3] = NAN;
     EXPECT(cyl_state_set(state, q, 7) == CYL_NOT_FINITE);
     EXPECT(cyl_state_pose(state, 100000, pose) == CYL_UNKNOWN_NAME);
@@ -141,6 +142,9 @@ int main(void) {
     CHECK(cyl_measure_index("dof", &dof));
     CHECK(cyl_batch_measures(batch, rows, 2, measures));
     EXPECT(measures[dof] == 7.0);
+    EXPECT(cyl_batch_poses(batch, rows, SIZE_MAX / 4, poses) == CYL_DIMENSION);
+    EXPECT(cyl_batch_jacobians(batch, rows, SIZE_MAX / 32, 0, jacobians) == CYL_DIMENSION);
+    EXPECT(cyl_inverse(jacobian, SIZE_MAX, 2, "truncated", inverse, NULL) == CYL_DIMENSION);
     EXPECT(cyl_measure_index("doff", &dof) == CYL_UNKNOWN_NAME);
     free(measures);
     cyl_batch_free(batch);

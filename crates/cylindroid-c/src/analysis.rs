@@ -6,9 +6,9 @@ use cylindroid::closure::{ClosedChain, Mobility};
 use cylindroid::inverse::{Weights, hyperbolic, weighted};
 use cylindroid::{Matrix, Method};
 
-use crate::arguments::{handle, handle_mut, slice, slice_mut, text};
+use crate::arguments::{handle, handle_mut, sized, slice, slice_mut, text};
 use crate::mechanism::cyl_mechanism;
-use crate::status::{cyl_status, guard, null};
+use crate::status::{cyl_status, guard};
 
 /// The counts of a configuration.
 #[repr(C)]
@@ -72,7 +72,7 @@ pub unsafe extern "C" fn cyl_inverse(
     rank: *mut usize,
 ) -> cyl_status {
     guard(|| {
-        let size = rows.checked_mul(cols).ok_or_else(|| null("matrix of this size"))?;
+        let size = sized("matrix", rows, cols)?;
         // SAFETY: as the header requires.
         let (matrix, method, out) = unsafe {
             (slice("matrix", matrix, size)?, text("method", method)?, slice_mut("out", out, size)?)
@@ -99,12 +99,13 @@ pub unsafe extern "C" fn cyl_hyperbolic(
     out: *mut f64,
 ) -> cyl_status {
     guard(|| {
+        let size = sized("jacobian", cols, 6)?;
         // SAFETY: as the header requires.
         let (jacobian, exists, out) = unsafe {
             (
-                slice("jacobian", jacobian, 6 * cols)?,
+                slice("jacobian", jacobian, size)?,
                 handle_mut("exists", exists)?,
-                slice_mut("out", out, 6 * cols)?,
+                slice_mut("out", out, size)?,
             )
         };
         let found = hyperbolic(&Matrix::from_fn(6, cols, |r, c| jacobian[6 * c + r]), h)?;

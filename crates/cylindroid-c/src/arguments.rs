@@ -37,6 +37,18 @@ pub(crate) fn reference(number: i32) -> Result<ReferenceFrame, Failure> {
     })
 }
 
+/// The size of an array of `count` parts; an error for one that no memory has.
+pub(crate) fn sized(what: &str, count: usize, part: usize) -> Result<usize, Failure> {
+    let size = count.checked_mul(part).filter(|size| *size <= MOST);
+    size.ok_or_else(|| {
+        let text = format!("{what} has {count} x {part} entries, more than memory has");
+        Failure(cyl_status::CYL_DIMENSION, text)
+    })
+}
+
+/// The largest number of entries that a slice may have.
+const MOST: usize = isize::MAX as usize / size_of::<f64>();
+
 /// # Safety
 /// See the module.
 pub(crate) unsafe fn slice<'a>(
@@ -50,6 +62,7 @@ pub(crate) unsafe fn slice<'a>(
     if data.is_null() {
         return Err(null(what));
     }
+    let size = sized(what, size, 1)?;
     // SAFETY: not null, and of this size as the module requires.
     Ok(unsafe { std::slice::from_raw_parts(data, size) })
 }
@@ -67,6 +80,7 @@ pub(crate) unsafe fn slice_mut<'a>(
     if data.is_null() {
         return Err(null(what));
     }
+    let size = sized(what, size, 1)?;
     // SAFETY: not null, and of this size as the module requires.
     Ok(unsafe { std::slice::from_raw_parts_mut(data, size) })
 }

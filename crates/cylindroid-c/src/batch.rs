@@ -3,7 +3,9 @@
 use cylindroid::kinematics::KinematicsBatch;
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 
-use crate::arguments::{end_effector, free, give, handle, handle_mut, reference, slice, slice_mut};
+use crate::arguments::{
+    end_effector, free, give, handle, handle_mut, reference, sized, slice, slice_mut,
+};
 use crate::mechanism::cyl_mechanism;
 use crate::status::{Failure, cyl_status, guard};
 
@@ -81,8 +83,12 @@ pub unsafe extern "C" fn cyl_batch_poses(
         // SAFETY: as the header requires.
         let batch = unsafe { handle("batch", batch) }?;
         // SAFETY: as the header requires.
-        let (q, out) =
-            unsafe { (slice("q", q, count * batch.n)?, slice_mut("poses", poses, 16 * count)?) };
+        let (q, out) = unsafe {
+            (
+                slice("q", q, sized("q", count, batch.n)?)?,
+                slice_mut("poses", poses, sized("poses", count, 16)?)?,
+            )
+        };
         batch.kinematics.poses_into(q, out)?;
         // The library stores them by rows.
         for pose in out.chunks_exact_mut(16) {
@@ -111,7 +117,10 @@ pub unsafe extern "C" fn cyl_batch_jacobians(
         let n = batch.n;
         // SAFETY: as the header requires.
         let (q, out) = unsafe {
-            (slice("q", q, count * n)?, slice_mut("jacobians", jacobians, 6 * n * count)?)
+            (
+                slice("q", q, sized("q", count, n)?)?,
+                slice_mut("jacobians", jacobians, sized("jacobians", count, 6 * n)?)?,
+            )
         };
         batch.kinematics.jacobians_into(q, reference(reference_number)?, out)?;
         // The library stores them by rows.
@@ -143,7 +152,10 @@ pub unsafe extern "C" fn cyl_batch_measures(
         let width = ManipulabilityBatch::WIDTH;
         // SAFETY: as the header requires.
         let (q, out) = unsafe {
-            (slice("q", q, count * batch.n)?, slice_mut("measures", measures, width * count)?)
+            (
+                slice("q", q, sized("q", count, batch.n)?)?,
+                slice_mut("measures", measures, sized("measures", count, width)?)?,
+            )
         };
         Ok(batch.measures.analyse_into(q, out)?)
     })

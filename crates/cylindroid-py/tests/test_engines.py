@@ -2,7 +2,6 @@
 
 import concurrent.futures
 import hashlib
-import importlib.util
 import os
 import pathlib
 import pickle
@@ -193,7 +192,6 @@ def test_columns_survive_pickling():
     assert column == COLUMNS["bend"]
 
 
-@pytest.mark.skipif(importlib.util.find_spec("ray") is None, reason="Ray is not installed")
 def test_ray_with_a_killed_worker(tmp_path):
     """In a network namespace without any interface but the loopback, with token authentication."""
     assert shutil.which("unshare"), "the test needs unshare (util-linux)"

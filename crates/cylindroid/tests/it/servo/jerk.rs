@@ -188,3 +188,51 @@ fn drives_of_closed_chains_keep_jerks() {
         assert!(most < jerk * (1.0 + 1e-6) && most > 0.5 * jerk, "{name}: {most}");
     }
 }
+
+/// Mirrored, in other units of length and of time: the same bounds.
+#[test]
+fn bounds_do_not_depend_on_units_and_signs() {
+    let mut random = Random(5);
+    for _ in 0..2000 {
+        let mut next = |from: f64, to: f64| random.within(from, to);
+        let limits = Limits {
+            lower: next(-2.0, -0.1),
+            upper: next(0.1, 2.0),
+            velocity: next(0.2, 3.0),
+            acceleration: next(0.5, 20.0),
+            jerk: next(1.0, 400.0),
+            ..Limits::NONE
+        };
+        let dt = 0.002;
+        let now = JointState {
+            position: next(0.9 * limits.lower, 0.9 * limits.upper),
+            velocity: next(-0.05, 0.05),
+            acceleration: next(-0.1, 0.1),
+        };
+        let own = VelocityBounds::next(&limits, now, dt);
+        assert!(own.lower < own.upper, "{own:?}");
+        for (size, time) in [(1.0, 1.0), (-1.0, 1.0), (1e3, 1.0), (-0.01, 1.0), (1.0, 60.0)] {
+            let [v, a, j] = [1, 2, 3].map(|k| size / f64::powi(time, k));
+            let ends = [size * limits.lower, size * limits.upper];
+            let there = Limits {
+                lower: ends[0].min(ends[1]),
+                upper: ends[0].max(ends[1]),
+                velocity: limits.velocity * v.abs(),
+                acceleration: limits.acceleration * a.abs(),
+                jerk: limits.jerk * j.abs(),
+                ..Limits::NONE
+            };
+            let now = JointState {
+                position: size * now.position,
+                velocity: v * now.velocity,
+                acceleration: a * now.acceleration,
+            };
+            let found = VelocityBounds::next(&there, now, time * dt);
+            let ends = [found.lower / v, found.upper / v];
+            let [lower, upper] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let most = 1e-8 * limits.velocity;
+            assert!((lower - own.lower).abs() < most, "{own:?} {found:?} {size} {time}");
+            assert!((upper - own.upper).abs() < most, "{own:?} {found:?} {size} {time}");
+        }
+    }
+}
