@@ -229,8 +229,7 @@ impl Servo {
         let places = self.chain.coordinates().iter().zip(&self.braking_margins);
         let mut clear = true;
         for (((primary, secondary), column), (&c, margin)) in scaled.zip(places) {
-            let acceleration = self.accelerations[c];
-            let now = JointState { position: q[c], velocity: self.rates[c], acceleration };
+            let now = JointState { position: q[c], velocity: self.rates[c], acceleration: 0.0 };
             clear &= margin.allows(now, (primary + secondary) * column);
         }
         if !clear {
@@ -238,11 +237,11 @@ impl Servo {
         }
         let scaled = self.primary.iter_mut().zip(&self.secondary).zip(&self.space.columns);
         let places = self.chain.coordinates().iter().zip(&self.braking_margins);
-        let (mut braking, dt) = (BrakingState::default(), self.options.dt);
+        let mut braking = BrakingState::default();
         for (((primary, secondary), column), (&c, margin)) in scaled.zip(places) {
             *primary += secondary;
-            let before = std::mem::replace(&mut self.rates[c], *primary * column);
-            self.accelerations[c] = (self.rates[c] - before) / dt;
+            // Accelerations count for joints with jerk limits, which do not come here.
+            self.rates[c] = *primary * column;
             if self.accelerates {
                 let time = self.rates[c].abs() * margin.slowness;
                 braking.stopping_time = braking.stopping_time.max(time);
