@@ -63,6 +63,12 @@ export class Connection {
 export function socketUrl(path: string): string {
   const url = new URL(path, location.href);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  // Of the words in the page's address those are the server's.
+  const asked = new URLSearchParams(location.search);
+  for (const name of ["session", "observe"]) {
+    const value = asked.get(name);
+    if (value !== null) url.searchParams.set(name, value);
+  }
   url.hash = "";
   return url.href;
 }

@@ -3,12 +3,14 @@ import { Sphere, Vector3 } from "three";
 import { Bar } from "./controls/bar";
 import { Joints } from "./controls/joints";
 import { Obstacles as ObstaclePanel } from "./controls/obstacles";
+import { Role } from "./controls/role";
 import { ServoControls } from "./controls/servo";
 import { Switches } from "./controls/switches";
 import { isTyping, Tools } from "./controls/tools";
 import { UnitControls } from "./controls/units";
 import { socketUrl } from "./connection";
 import { h } from "./dom";
+import { Drawings } from "./drawings";
 import { History } from "./history";
 import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
@@ -99,7 +101,9 @@ function start(): void {
   inUnits(page.right, redraw);
   // A folded panel is not kept up to date.
   for (const { onToggle } of [joints.panel, servo.panel, obstaclePanel.panel, pose, singular]) onToggle(redraw);
-  stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group);
+  const drawings = new Drawings(labels);
+  session.on("drawings", (message) => drawings.show(message));
+  stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group, drawings.group);
 
   const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
   screws.onToggle(wantScrews);
@@ -128,6 +132,7 @@ function start(): void {
     },
     share: () => void share(),
   });
+  new Role(bar.status, session);
   const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return;
@@ -189,6 +194,7 @@ function start(): void {
     const box = robot.box();
     size = Math.max(2.2 * box.getBoundingSphere(new Sphere()).radius, 0.1 * scene.reach);
     target.scale(size);
+    drawings.scale(size);
     stage.scale(size, scene.dimension === 2 ? -0.03 * size : box.min.z);
     fit();
     // Planar mechanisms are seen in their plane.
@@ -227,6 +233,12 @@ function start(): void {
     // Controls show what is in effect, not what was refused.
     if (session.scene) for (const controls of [joints, servo]) controls.build(session.scene);
     if (!reports.owns(reply_to) && !compare.owns(reply_to)) page.toast(message, true, `${place} ${culprit}`);
+  });
+  session.on("about", () => {
+    const observes = !session.drives;
+    for (const { body } of [joints.panel, obstaclePanel.panel, servo.panel]) body.inert = observes;
+    bar.observe(observes);
+    target.setEnabled(!observes);
   });
   const banner = new LinkBanner(page.banner, () => session.retry());
   session.on("link", ({ link, wait }) => {

@@ -148,7 +148,17 @@ export type Failure = {
   type: "error"; reply_to: string | number | null;
   culprit: string; place: string; message: string; way_out: string | null; nearest: number | null;
 };
-export type FromServer = Scene | State | Comparison | Report | Failure;
+/** Of a session that several clients may share; others have none. */
+export type About = {
+  type: "session"; name: string | null; clients: number; driver: "you" | "another" | "nobody"; program: boolean;
+};
+export type Drawing = { name: string; rgba: Colour } & (
+  | { kind: "frame"; pose: Pose; size: number | null }
+  | { kind: "line" | "points"; points: Vec3[] }
+);
+/** All that a program draws beside the robot, in place of what it drew before. */
+export type Drawings = { type: "drawings"; drawings: Drawing[] };
+export type FromServer = Scene | State | Comparison | Report | Failure | About | Drawings;
 
 // To the server -----------------------------------------------------------------------------------
 
@@ -171,6 +181,8 @@ export type ToServer = { id?: string | number } & (
   | ({ type: "move_obstacle"; name: string } & Pose)
   | { type: "remove_obstacle"; name: string }
   | { type: "avoid_collisions"; on: boolean; gap: number | null; margin: number | null }
+  /** Takes over, or lets another drive. */
+  | { type: "drive"; on: boolean }
   /** This state has been drawn: the server holds back what a slow browser would only queue. */
   | { type: "seen"; seq: number }
 );

@@ -43,7 +43,11 @@ export class Restore {
   scene(scene: Scene): boolean {
     if (!this.fresh) return false;
     this.fresh = false;
-    if (this.last?.model === scene.name) {
+    // A session that others hold, or a program, is as they have it.
+    const { about } = this.session;
+    const isOwn = about === null || (!about.program && about.clients === 1 && this.session.drives);
+    if (!isOwn) this.wanted = null;
+    else if (this.last?.model === scene.name) {
       this.wanted = this.last;
       this.say("The connection is restored, with the previous configuration.");
     }

@@ -1,7 +1,7 @@
 /** One session with the server: the newest scene and state, and everything that wants to know of them. */
 import { Connection, type Link } from "./connection";
 import { Outbox } from "./outbox";
-import type { Comparison, Failure, FromServer, Report, Scene, State, ToServer } from "./protocol";
+import type { About, Comparison, Drawings, Failure, FromServer, Report, Scene, State, ToServer } from "./protocol";
 
 type Events = {
   scene: Scene;
@@ -9,12 +9,17 @@ type Events = {
   compare: Comparison;
   report: Report;
   failure: Failure;
+  about: About;
+  drawings: Drawings;
   /** A message, before it goes. */
   sending: ToServer;
   link: { link: Link; wait: number };
   /** A state as it came, before any is dropped: for the recorder. */
   raw: string;
 };
+
+/** What an observer may send. */
+const OBSERVES: readonly ToServer["type"][] = ["overlays", "compare", "report", "distances", "drive", "seen"];
 
 const STATE_START = '{"type":"state"';
 const ACK = /"ack":(\d+)/;
@@ -23,6 +28,8 @@ const SEQ = /"seq":(\d+)/;
 export class Session {
   scene: Scene | null = null;
   state: State | null = null;
+  /** Null for a session of this page alone. */
+  about: About | null = null;
   link: Link = "connecting";
   /** Wants every state, drawn or not: the server then holds none back for a slow page. */
   eager = false;
@@ -40,6 +47,7 @@ export class Session {
       link: (link, wait) => {
         this.link = link;
         if (link !== "open") this.newest = null;
+        if (link === "lost") this.about = null;
         this.outbox.clear();
         this.emit("link", { link, wait });
       },
@@ -51,8 +59,14 @@ export class Session {
     all.push(listener);
   }
 
-  /** Sends at once; gives the id that the answer will carry. */
+  /** False while another page, or nobody, drives the robot. */
+  get drives(): boolean {
+    return this.about === null || this.about.driver === "you";
+  }
+
+  /** Sends at once; gives the id that the answer will carry. An observer sends nothing that moves the robot. */
   send(message: ToServer): number | null {
+    if (!this.drives && !OBSERVES.includes(message.type)) return null;
     this.emit("sending", message);
     const id = (this.ids += 1);
     return this.connection.send({ id, ...message }) ? id : null;
@@ -94,6 +108,12 @@ export class Session {
       this.scene = message;
       if (!same) this.state = null;
       this.emit("scene", message);
+    } else if (message.type === "session") {
+      this.about = message;
+      this.emit("about", message);
+    } else if (message.type === "drawings") {
+      this.emit("drawings", message);
+      this.wake();
     } else if (message.type === "state") {
       this.receiveState(raw);
     } else if (message.type === "error") {

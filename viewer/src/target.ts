@@ -79,6 +79,13 @@ export class Target {
     if (from.distanceTo(to) > 0.005 * size) this.way.add(rod(from, to, 0.003 * size, drawn("c-target", 0.6)));
   }
 
+  /** An observer has no handle. */
+  setEnabled(enabled: boolean): void {
+    this.gizmo.enabled = enabled;
+    this.gizmo.getHelper().visible = enabled;
+    this.stage.invalidate();
+  }
+
   /** A box with the target and its handle in it. */
   within(box: Box3): Box3 {
     const room = this.axes.target.scale.x * 1.6;

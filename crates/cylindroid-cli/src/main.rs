@@ -1,64 +1,7 @@
-//! `cylindroid`: kinematics, Cartesian control, screw systems and closed chains of robots.
-//!
-//! Parses, runs, returns the exit code: 0 success, 1 negative answer, 2 error. A closed pipe counts
-//! as success.
+//! The binary `cylindroid`: parses, runs, returns the exit code.
 
-mod args;
-mod commands;
-mod diagnostic;
-mod flags;
-mod number_file;
-mod obstacle;
-mod output;
-mod plot;
-mod task_trajectory;
-mod trajectory;
-mod values;
-mod viewer;
-
-use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser};
-
-use crate::args::Cli;
-
-/// Exit code of an error.
-const ERROR: u8 = 2;
-
 fn main() -> ExitCode {
-    match run() {
-        Ok(code) => code,
-        Err(error) if diagnostic::is_closed_pipe(&error) => ExitCode::SUCCESS,
-        Err(error) => {
-            diagnostic::print(&error);
-            ExitCode::from(ERROR)
-        }
-    }
-}
-
-fn run() -> anyhow::Result<ExitCode> {
-    let words = std::env::args_os().map(|word| {
-        word.into_string().map_err(|word| {
-            let hint = "rename the file or leave out these bytes";
-            anyhow::anyhow!("the argument {word:?} is not UTF-8; {hint}")
-        })
-    });
-    let words = values::join_after_commas(words.collect::<anyhow::Result<Vec<String>>>()?);
-    if words.len() <= 1 {
-        Cli::command().print_help()?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    let cli = match Cli::try_parse_from(&words) {
-        Ok(cli) => cli,
-        Err(message) => {
-            // clap prints help and version to stdout with exit code 0.
-            message.print()?;
-            return Ok(ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(ERROR)));
-        }
-    };
-    let mut out = BufWriter::new(io::stdout().lock());
-    let code = commands::run(&cli, &mut out).map_err(|error| flags::named(error, &words))?;
-    out.flush()?;
-    Ok(code)
+    cylindroid_cli::run(std::env::args_os())
 }

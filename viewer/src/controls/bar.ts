@@ -17,17 +17,20 @@ function button(label: string, name: Icon, action: () => void, shown = label): H
 
 export class Bar {
   private readonly model = h("div", { class: "model" }, "no model yet");
-  private readonly status = h("span", { class: "status", role: "status" }, "connecting");
+  /** Says whether the server is there. */
+  readonly status = h("span", { class: "status", role: "status" }, "connecting");
   private readonly play: HTMLButtonElement;
   private readonly record: HTMLButtonElement;
   private readonly saves: HTMLElement;
   private readonly themeButton = button("Theme", "system", () => nextTheme(), "");
+  private readonly reset: HTMLButtonElement;
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private playing = true;
 
   constructor(bar: HTMLElement, actions: BarActions) {
     this.play = button("Pause", "pause", () => (this.playing ? actions.pause() : actions.play()));
+    this.reset = button("Reset", "reset", actions.reset);
     this.undo = button("Undo (Ctrl+Z)", "undo", actions.undo, "");
     this.redo = button("Redo (Ctrl+Shift+Z)", "redo", actions.redo, "");
     this.undoable(false, false);
@@ -44,7 +47,7 @@ export class Bar {
       this.model,
       h("div", { class: "spread" }),
       this.play,
-      button("Reset", "reset", actions.reset),
+      this.reset,
       h("span", { class: "group", role: "group", "aria-label": "History" }, this.undo, this.redo),
       h("span", { class: "rule" }),
       this.record,
@@ -83,6 +86,11 @@ export class Bar {
   undoable(undo: boolean, redo: boolean): void {
     this.undo.setAttribute("aria-disabled", String(!undo));
     this.redo.setAttribute("aria-disabled", String(!redo));
+  }
+
+  /** An observer cannot move the robot. */
+  observe(observes: boolean): void {
+    for (const control of [this.play, this.reset, this.undo, this.redo]) control.disabled = observes;
   }
 
   link(link: Link): void {

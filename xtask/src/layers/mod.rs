@@ -20,7 +20,7 @@ use self::source::{below, files, text_of};
 const CRATES: [&str; 5] = [
     "crates/cylindroid/src/lib.rs",
     "crates/cylindroid-c/src/lib.rs",
-    "crates/cylindroid-cli/src/main.rs",
+    "crates/cylindroid-cli/src/lib.rs",
     "crates/cylindroid-py/src/lib.rs",
     "xtask/src/main.rs",
 ];

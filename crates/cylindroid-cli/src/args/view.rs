@@ -11,8 +11,9 @@ pub(crate) const ABOUT: &str = "\
 The web viewer: display a model, drag its tool or object, and monitor its measures
 
 Prints the URL of the page and serves it until Ctrl-C. Every browser window has a session of its \
-own: configuration, target and actuated joints. The servo is that of `move` and respects all joint \
-limits. Closed chains are assembled first.
+own: configuration, target and actuated joints. Windows with the same `?session=NAME` at the end of \
+the URL share one: the first drives, the others observe or take over. The servo is that of `move` \
+and respects all joint limits. Closed chains are assembled first.
 
 The server listens on the loopback interface unless --host is given. Meshes are served only from \
 the folders of the model: the folder of its file, its package, and the packages it refers to.";

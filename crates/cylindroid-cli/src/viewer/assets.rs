@@ -34,6 +34,8 @@ const PATH: &AsciiSet =
 #[derive(Debug, Default)]
 pub(super) struct Folders {
     open: Vec<PathBuf>,
+    /// The folder of all URLs: empty, or a slash and the token.
+    root: String,
 }
 
 /// A mesh as the page gets it.
@@ -75,7 +77,12 @@ impl Folders {
         }
         // The root of the file system is never served.
         open.retain(|folder| folder.parent().is_some());
-        Ok(Self { open: open.into_iter().collect() })
+        Ok(Self { open: open.into_iter().collect(), root: String::new() })
+    }
+
+    /// The same, with URLs below `/<token>`.
+    pub(super) fn behind(self, token: &str) -> Self {
+        Self { root: format!("/{token}"), ..self }
     }
 
     /// URL and format of a mesh, or the reason why it is not served.
@@ -95,7 +102,8 @@ impl Folders {
             self.open.iter().enumerate().find_map(|(i, folder)| {
                 let inside = file.strip_prefix(folder).ok()?.to_str()?;
                 let inside = inside.replace(std::path::MAIN_SEPARATOR, "/");
-                Some(format!("/mesh/{i}/{}", utf8_percent_encode(&inside, PATH)))
+                let root = &self.root;
+                Some(format!("{root}/mesh/{i}/{}", utf8_percent_encode(&inside, PATH)))
             })
         });
         match found {
@@ -180,7 +188,7 @@ mod tests {
             fs::write(all.path().join(name), name).unwrap();
         }
         let folder = folder.canonicalize().unwrap();
-        let open = Folders { open: vec![folder.clone()] };
+        let open = Folders { open: vec![folder.clone()], root: String::new() };
         assert!(open.file(0, "meshes/a b.stl").is_some() && open.file(0, "meshes/t.PNG").is_some());
         for path in [
             "../out.stl",

@@ -18,8 +18,6 @@ pub(super) struct Bodies {
     /// Made when it is first needed.
     model: Option<CollisionModel>,
     obstacles: Vec<ObstacleArg>,
-    /// Pairs closer than this are in the states (m); `None`: no distances are computed.
-    margin: Option<f64>,
     near: Vec<NearPair>,
 }
 
@@ -45,12 +43,7 @@ struct NearJson<'a> {
 impl Bodies {
     /// With the obstacles of the start.
     pub(super) fn new(start: &Start) -> Self {
-        Self {
-            model: None,
-            obstacles: start.bodies.obstacles.clone(),
-            margin: None,
-            near: Vec::new(),
-        }
+        Self { model: None, obstacles: start.bodies.obstacles.clone(), near: Vec::new() }
     }
 
     pub(super) fn obstacles(&self) -> &[ObstacleArg] {
@@ -63,16 +56,6 @@ impl Bodies {
             Some(model) => Ok(model),
             none => Ok(none.insert(start.collision_model()?)),
         }
-    }
-
-    /// Computes pairs closer than `margin` (m) for every state, or none.
-    pub(super) fn show(&mut self, start: &Start, margin: Option<f64>) -> Result<()> {
-        if let Some(margin) = margin {
-            Error::check_positive("margin", margin)?;
-            self.model(start)?;
-        }
-        self.margin = margin;
-        Ok(())
     }
 
     pub(super) fn add(&mut self, start: &Start, obstacle: ObstacleArg) -> Result<()> {
@@ -96,17 +79,24 @@ impl Bodies {
         Ok(())
     }
 
-    /// Finds the near pairs of a state, if they are asked for.
-    pub(super) fn find_near(&mut self, state: &State) -> Result<()> {
-        let (Some(margin), Some(model)) = (self.margin, &mut self.model) else { return Ok(()) };
-        model.near(state, margin, &mut self.near)?;
+    /// Finds the pairs of a state that are closer than `margin` (m), if one is given.
+    pub(super) fn find_near(
+        &mut self,
+        start: &Start,
+        state: &State,
+        margin: Option<f64>,
+    ) -> Result<()> {
+        let Some(margin) = margin else { return Ok(()) };
+        let mut near = std::mem::take(&mut self.near);
+        self.model(start)?.near(state, margin, &mut near)?;
+        self.near = near;
         self.near.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         Ok(())
     }
 
-    /// The near pairs that were found, if they are asked for.
-    pub(super) fn distances(&self) -> Option<DistancesJson<'_>> {
-        let (margin, model) = self.margin.zip(self.model.as_ref())?;
+    /// The near pairs that were found for this margin (m).
+    pub(super) fn distances(&self, margin: Option<f64>) -> Option<DistancesJson<'_>> {
+        let (margin, model) = margin.zip(self.model.as_ref())?;
         let near = self.near.iter().take(MOST_PAIRS).map(|near| {
             let [a, b] = model.names(near.pair);
             NearJson {

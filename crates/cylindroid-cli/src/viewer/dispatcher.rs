@@ -4,6 +4,7 @@ use cylindroid::{Error, Result, Twist, Vec3};
 use serde_json::Value;
 
 use super::avoidance::{GAP, MARGIN};
+use super::client_view::ClientView;
 use super::compare::compare;
 use super::inverse_parameters::invert_by;
 use super::messages::{Complaint, Message, Request, TargetPose, TwistCommand};
@@ -30,24 +31,28 @@ pub(super) enum Reply {
     Report(Report),
     /// The client has drawn this state.
     Seen(u64),
+    /// The client wants to drive, or no longer.
+    Drive(bool),
 }
 
-/// Executes a message. On an error the session is unchanged, except for `joint`, which moves as far
-/// as possible.
+/// Executes a message of the client with this view. On an error the session is unchanged, except for
+/// `joint`, which moves as far as possible.
 pub(super) fn handle(
     session: &mut Session,
+    view: &mut ClientView,
     request: Request,
 ) -> std::result::Result<Reply, Complaint> {
     let Request { id, message } = request;
     if let Message::Seen(seen) = message {
         return Ok(Reply::Seen(seen.seq));
     }
-    session.acknowledge(id.as_ref());
-    obey(session, message, id.as_ref()).map_err(|c| Complaint { reply_to: id, ..c })
+    view.ack.clone_from(&id);
+    obey(session, view, message, id.as_ref()).map_err(|c| Complaint { reply_to: id, ..c })
 }
 
 fn obey(
     session: &mut Session,
+    view: &mut ClientView,
     message: Message,
     id: Option<&Value>,
 ) -> std::result::Result<Reply, Complaint> {
@@ -97,14 +102,16 @@ fn obey(
                 names.collect::<Result<_>>().map_err(at("overlays.names"))?;
             all.sort_unstable();
             all.dedup();
-            session.choose_overlays(all);
+            view.overlays = all;
         }
         Message::Compare(asked) => return compare(session, &asked, id).map(Reply::Text),
         Message::Report(asked) => {
             return Report::new(session, &asked.name, id).map(Reply::Report);
         }
         Message::Distances(asked) => {
-            session.show_distances(asked.margin).map_err(at("distances.margin"))?;
+            let checked = asked.margin.map_or(Ok(()), |margin| session.check_margin(margin));
+            checked.map_err(at("distances.margin"))?;
+            view.margin = asked.margin;
         }
         Message::AddObstacle(asked) => {
             let obstacle = obstacle(asked)?;
@@ -124,6 +131,7 @@ fn obey(
             session.avoid(on.then_some(distances)).map_err(at("avoid_collisions"))?;
             return Ok(Reply::Scene);
         }
+        Message::Drive(drive) => return Ok(Reply::Drive(drive.on)),
         Message::Seen(seen) => return Ok(Reply::Seen(seen.seq)),
     }
     Ok(Reply::Nothing)

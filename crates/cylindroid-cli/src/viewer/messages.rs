@@ -43,10 +43,27 @@ pub(super) enum Message {
     MoveObstacle(MoveObstacle),
     RemoveObstacle(Name),
     AvoidCollisions(AvoidCollisions),
+    Drive(Drive),
     Seen(Seen),
 }
 
-const TYPES: [&str; 21] = [
+impl Message {
+    /// True if it changes the session, which only its driver may.
+    pub(super) fn drives(&self) -> bool {
+        let observes = matches!(
+            self,
+            Self::Overlays(_)
+                | Self::Compare(_)
+                | Self::Report(_)
+                | Self::Distances(_)
+                | Self::Drive(_)
+                | Self::Seen(_)
+        );
+        !observes
+    }
+}
+
+const TYPES: [&str; 22] = [
     "joint",
     "configuration",
     "target",
@@ -67,6 +84,7 @@ const TYPES: [&str; 21] = [
     "move_obstacle",
     "remove_obstacle",
     "avoid_collisions",
+    "drive",
     "seen",
 ];
 
@@ -144,6 +162,12 @@ pub(super) struct Compare {
     pub(super) h: Option<f64>,
     #[serde(default)]
     pub(super) twist: Option<[f64; 6]>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Drive {
+    pub(super) on: bool,
 }
 
 #[derive(Debug, Deserialize)]

@@ -1,20 +1,27 @@
 //! The server of the web viewer: docs/viewer.md is its contract.
 //!
-//! Every WebSocket has a session of its own. From the leaves up: `json`, `obstacle_messages`,
-//! `messages`, `names`, `inverse_parameters`, `assets`, `reaching` and `avoidance` do not depend on a session; `start` is
-//! the initial state of sessions, `bodies` their obstacles and distances; `session` is the
-//! configuration, target and servo of one client; `measures`,
-//! `overlays`, `compare`, `reports`, `snapshot` and `scene` describe a session; `dispatcher`
-//! executes messages; `socket` exchanges messages and states in real time; `safety` protects `server`, which
-//! listens. All mathematics is in the library.
+//! Clients join sessions, each alone or several by name. From the leaves up: `json`,
+//! `obstacle_messages`, `messages`, `names`, `inverse_parameters`, `assets`, `reaching` and
+//! `avoidance` do not depend on a session; `start` is the initial state of sessions, `bodies` their
+//! obstacles and distances; `session` is a configuration with target and servo; `client_view` what
+//! one client wants to see of it; `measures`, `overlays`, `compare`, `reports`, `snapshot` and
+//! `scene` describe a session; `dispatcher` executes messages; `shared_session` moves a session in
+//! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it;
+//! `socket` talks to one client; `safety` protects `server`, which listens; `embedded` is all of it
+//! inside another program, with its `drawings` and `drags`. All mathematics is in the library.
 
 mod assets;
 mod avoidance;
 mod bodies;
+mod client_view;
 mod compare;
 mod dispatcher;
+mod drags;
+mod drawings;
+mod embedded;
 mod inverse_parameters;
 mod json;
+mod mailbox;
 mod measures;
 mod messages;
 mod names;
@@ -26,11 +33,16 @@ mod safety;
 mod scene;
 mod server;
 mod session;
+mod sessions;
+mod shared_session;
 mod snapshot;
 mod socket;
 mod start;
 
 pub(crate) use self::assets::page_is_built;
 pub(crate) use self::bodies::check_count;
+pub use self::drags::Drag;
+pub use self::drawings::{Drawing, DrawnShape};
+pub use self::embedded::{ShowOptions, Viewer};
 pub(crate) use self::server::Server;
 pub(crate) use self::start::{Start, StartBodies};

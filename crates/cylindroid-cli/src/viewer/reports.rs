@@ -52,6 +52,11 @@ impl Report {
         })
     }
 
+    /// The id of the message that asked for it.
+    pub(super) fn reply_to(&self) -> Option<&Value> {
+        self.reply_to.as_ref()
+    }
+
     /// The message to the client, report or error.
     pub(super) fn text(self) -> String {
         let Self { name, reply_to, .. } = &self;

@@ -96,11 +96,20 @@ impl Names {
     }
 }
 
+/// What requests are checked with.
+#[derive(Debug, Clone)]
+pub(super) struct Guard {
+    pub(super) names: Names,
+    /// The pages that may show this one in a frame; `None`: no page.
+    pub(super) frame_ancestors: Option<String>,
+}
+
 /// Rejects foreign requests; adds the security headers to all answers.
-pub(super) async fn guard(State(names): State<Names>, request: Request, next: Next) -> Response {
-    let fault = names.fault(request.headers());
+pub(super) async fn guard(State(own): State<Guard>, request: Request, next: Next) -> Response {
+    let fault = own.names.fault(request.headers());
     let host = request.headers().get(header::HOST).and_then(|h| h.to_str().ok());
-    let policy = policy(host.filter(|_| fault.is_none()).unwrap_or_default());
+    let frames = own.frame_ancestors.as_deref().unwrap_or("'none'");
+    let policy = policy(host.filter(|_| fault.is_none()).unwrap_or_default(), frames);
     let mut response = match fault {
         Some(fault) => (StatusCode::FORBIDDEN, fault).into_response(),
         None if has_foreign_form(request.uri()) => {
@@ -112,13 +121,15 @@ pub(super) async fn guard(State(names): State<Names>, request: Request, next: Ne
     let headers = response.headers_mut();
     for (name, value) in [
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::X_FRAME_OPTIONS, "DENY"),
         (header::REFERRER_POLICY, "no-referrer"),
         (header::CACHE_CONTROL, "no-cache"),
         (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
         (header::HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
     ] {
         headers.insert(name, HeaderValue::from_static(value));
+    }
+    if own.frame_ancestors.is_none() {
+        headers.insert(header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY"));
     }
     if let Ok(policy) = HeaderValue::from_str(&policy) {
         headers.insert(header::CONTENT_SECURITY_POLICY, policy);
@@ -132,10 +143,10 @@ fn has_foreign_form(uri: &Uri) -> bool {
 }
 
 /// Only resources of this server, and those created by the page (textures of meshes).
-fn policy(host: &str) -> String {
+fn policy(host: &str, frame_ancestors: &str) -> String {
     format!(
         "default-src 'self'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self' blob: ws://{host}; worker-src 'self' blob:; object-src \
-         'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+         'none'; base-uri 'none'; form-action 'none'; frame-ancestors {frame_ancestors}"
     )
 }
 

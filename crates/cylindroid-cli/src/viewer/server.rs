@@ -3,7 +3,6 @@
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Path, State};
@@ -16,7 +15,9 @@ use cylindroid::model::read_regular_file;
 use tokio::net::{TcpListener, TcpStream};
 
 use super::assets::{Page, page_is_built};
-use super::safety::{Names, guard};
+use super::safety::{Guard, Names, guard};
+use super::sessions::{Asked, Sessions};
+use super::shared_session::SharedSession;
 use super::socket::talk;
 use super::start::Start;
 
@@ -25,8 +26,6 @@ use super::start::Start;
 const LONGEST: usize = 1024 * 1024;
 /// Maximum size of a mesh or image file [bytes].
 const LARGEST_MESH: u64 = 256 << 20;
-/// Maximum number of concurrent sessions.
-const MOST_SESSIONS: usize = 100;
 
 const NOT_BUILT: &str = "The page is not built: run `cargo xtask viewer` in the source of \
                          cylindroid, then build it again. The protocol (docs/viewer.md) is served \
@@ -38,44 +37,54 @@ pub(crate) struct Server {
     listener: TcpListener,
     names: Names,
     shared: Shared,
+    frame_ancestors: Option<String>,
 }
 
 #[derive(Debug, Clone)]
 struct Shared {
-    start: Arc<Start>,
-    sessions: Arc<AtomicUsize>,
+    sessions: Sessions,
+    /// The folder of all paths: empty, or a slash and the token.
+    folder: Arc<str>,
 }
 
-/// A slot for a session, released when dropped.
-#[derive(Debug)]
-struct Place(Arc<AtomicUsize>);
-
-impl Place {
-    fn of(sessions: &Arc<AtomicUsize>) -> Option<Self> {
-        let more = |n| (n < MOST_SESSIONS).then_some(n + 1);
-        sessions.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).ok()?;
-        Some(Self(Arc::clone(sessions)))
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
-    }
+/// Where a server listens, and for whom.
+#[derive(Debug, Default)]
+pub(super) struct Place<'a> {
+    pub(super) host: &'a str,
+    /// 0: any that is free.
+    pub(super) port: u16,
+    /// A secret without which nothing is served; empty: none.
+    pub(super) token: &'a str,
+    /// The pages that may show this one in a frame, as in a content security policy.
+    pub(super) frame_ancestors: Option<String>,
 }
 
 impl Server {
     /// Listens at this host and port (0: any that is free).
     pub(crate) async fn bind(start: Start, host: &str, port: u16) -> io::Result<Self> {
+        Self::of(Arc::new(start), None, Place { host, port, ..Place::default() }).await
+    }
+
+    /// Listens, for the session of a program if there is one.
+    pub(super) async fn of(
+        start: Arc<Start>,
+        of_program: Option<Arc<SharedSession>>,
+        Place { host, port, token, frame_ancestors }: Place<'_>,
+    ) -> io::Result<Self> {
         let listener = TcpListener::bind((host.trim_matches(['[', ']']), port)).await?;
         let address: SocketAddr = listener.local_addr()?;
-        let shared = Shared { start: Arc::new(start), sessions: Arc::new(AtomicUsize::new(0)) };
-        Ok(Self { listener, names: Names::new(host, address), shared })
+        let folder = if token.is_empty() { String::new() } else { format!("/{token}") };
+        let shared = Shared { sessions: Sessions::new(start, of_program), folder: folder.into() };
+        Ok(Self { listener, names: Names::new(host, address), shared, frame_ancestors })
     }
 
     /// The URL of the page.
     pub(crate) fn url(&self) -> String {
-        self.names.url()
+        let folder = &*self.shared.folder;
+        match folder.strip_prefix('/') {
+            None => self.names.url(),
+            Some(token) => format!("{}{token}/", self.names.url()),
+        }
     }
 
     /// The URL for other machines, if the server listens to them.
@@ -85,16 +94,23 @@ impl Server {
 
     /// Serves until ctrl-c.
     pub(crate) async fn serve(self) -> io::Result<()> {
-        let router = Router::new()
-            .route("/ws", get(session))
-            .route("/mesh/{folder}/{*path}", get(mesh))
-            .fallback(get(page))
-            .with_state(self.shared)
-            .layer(middleware::from_fn_with_state(self.names, guard));
         tokio::select! {
-            ended = axum::serve(self.listener.tap_io(without_delay), router) => ended,
+            ended = self.serve_on() => ended,
             stopped = tokio::signal::ctrl_c() => stopped,
         }
+    }
+
+    /// Serves as long as the runtime lives.
+    pub(super) async fn serve_on(self) -> io::Result<()> {
+        let folder = &*self.shared.folder;
+        let router = Router::new()
+            .route(&format!("{folder}/ws"), get(session))
+            .route(&format!("{folder}/mesh/{{folder}}/{{*path}}"), get(mesh))
+            .fallback(get(page))
+            .with_state(self.shared.clone());
+        let guarded = Guard { names: self.names, frame_ancestors: self.frame_ancestors };
+        let router = router.layer(middleware::from_fn_with_state(guarded, guard));
+        axum::serve(self.listener.tap_io(without_delay), router).await
     }
 }
 
@@ -103,13 +119,17 @@ fn without_delay(stream: &mut TcpStream) {
     let _ = stream.set_nodelay(true);
 }
 
-async fn session(State(shared): State<Shared>, upgrade: WebSocketUpgrade) -> Response {
-    let Some(place) = Place::of(&shared.sessions) else {
-        let what = "There are too many sessions; close one of them.";
+async fn session(State(shared): State<Shared>, uri: Uri, upgrade: WebSocketUpgrade) -> Response {
+    let asked = match Asked::of(uri.query().unwrap_or_default()) {
+        Ok(asked) => asked,
+        Err(what) => return (StatusCode::BAD_REQUEST, what).into_response(),
+    };
+    let Some(place) = shared.sessions.place() else {
+        let what = "There are too many clients; close one of them.";
         return (StatusCode::SERVICE_UNAVAILABLE, what).into_response();
     };
     upgrade.max_message_size(LONGEST).max_frame_size(LONGEST).on_upgrade(async move |socket| {
-        talk(socket, shared.start).await;
+        talk(socket, shared.sessions, asked).await;
         drop(place);
     })
 }
@@ -118,7 +138,7 @@ async fn mesh(
     State(shared): State<Shared>,
     Path((folder, path)): Path<(usize, String)>,
 ) -> Response {
-    let Some(file) = shared.start.folders.file(folder, &path) else {
+    let Some(file) = shared.sessions.start().folders.file(folder, &path) else {
         return (StatusCode::NOT_FOUND, "There is no such mesh in the folders of the model.")
             .into_response();
     };
@@ -149,8 +169,12 @@ fn mime_guess(file: &std::path::Path) -> &'static str {
     }
 }
 
-async fn page(uri: Uri) -> Response {
-    let name = match uri.path() {
+async fn page(State(shared): State<Shared>, uri: Uri) -> Response {
+    let Some(path) = uri.path().strip_prefix(&*shared.folder) else {
+        let what = "There is no such page: its address contains a token, which the program prints.";
+        return (StatusCode::NOT_FOUND, what).into_response();
+    };
+    let name = match path {
         "/" => "index.html",
         path => path.trim_start_matches('/'),
     };

@@ -1,8 +1,9 @@
-//! A session: one client's configuration, target and servo.
+//! A session: configuration, target and servo.
 //!
 //! Independent of sockets and real time: messages change it, and steps move it.
 
 mod collisions;
+mod followed;
 mod twist_command;
 mod velocity_mode;
 
@@ -14,14 +15,12 @@ use cylindroid::ik::Task;
 use cylindroid::model::FrameId;
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
 use cylindroid::{Error, Mechanism, Pose, Result, Servo, ServoOptions, State};
-use serde_json::Value;
 
 use super::assets::Folders;
 use super::avoidance::{Avoidance, GAP, LastStep, MARGIN};
 use super::bodies::Bodies;
 use super::inverse_parameters::Chosen;
 use super::messages::{Complaint, NullSpace, TargetPose};
-use super::names::Overlay;
 use super::start::Start;
 use twist_command::Driven;
 
@@ -43,21 +42,23 @@ pub(super) struct Session {
     /// The error of the last step.
     trouble: Option<Error>,
     target: Pose,
+    /// True if somebody put it there; otherwise it moves with the tool of a program.
+    is_target_placed: bool,
     is_playing: bool,
+    /// True if a program set the configuration last.
+    is_followed: bool,
     /// True if another step would change nothing.
     is_resting: bool,
     last: Option<LastStep>,
     self_motion: Option<SelfMotion>,
     /// In velocity mode.
     driven: Option<Driven>,
-    overlays: Vec<Overlay>,
     bodies: Bodies,
     /// Least distance and margin (m), if collisions are avoided, and the servo that does, or the
     /// reason why there is none.
     avoidance: Option<((f64, f64), Result<Avoidance>)>,
     /// Clock of the servo, in steps.
     steps: u64,
-    ack: Option<Value>,
 }
 
 #[derive(Debug)]
@@ -85,17 +86,17 @@ impl Session {
             servo: Servo::new(&mechanism, options.clone()),
             trouble: None,
             task: "pose".to_owned(),
+            is_target_placed: false,
             is_playing: true,
+            is_followed: false,
             // The target is at the tool until a message moves it.
             is_resting: true,
             last: None,
             self_motion: None,
             driven: None,
-            overlays: Vec::new(),
             bodies: Bodies::new(&start),
             avoidance: None,
             steps: 0,
-            ack: None,
             method,
             options,
             state,
@@ -179,17 +180,9 @@ impl Session {
         self.self_motion.as_ref().map_or(0.0, |s| s.rate)
     }
 
-    pub(super) fn overlays(&self) -> &[Overlay] {
-        &self.overlays
-    }
-
     /// Clock of the servo [s].
     pub(super) fn time(&self) -> f64 {
         self.steps as f64 / f64::from(STEPS)
-    }
-
-    pub(super) fn ack(&self) -> Option<&Value> {
-        self.ack.as_ref()
     }
 
     pub(super) fn method(&self) -> &Chosen {
@@ -280,16 +273,11 @@ impl Session {
         }
     }
 
-    /// Stores the id of a message for the next state.
-    pub(super) fn acknowledge(&mut self, id: Option<&Value>) {
-        self.ack = id.cloned();
-    }
-
     /// Controls this frame; the target is its current pose.
     pub(super) fn choose_frame(&mut self, frame: FrameId) -> Result<()> {
         let options = ServoOptions { end_effector: frame.into(), ..self.options.clone() };
         self.take(options)?;
-        self.target = self.state.pose(frame);
+        (self.target, self.is_target_placed) = (self.state.pose(frame), false);
         Ok(())
     }
 
@@ -306,12 +294,8 @@ impl Session {
         Ok(())
     }
 
-    pub(super) fn choose_overlays(&mut self, overlays: Vec<Overlay>) {
-        self.overlays = overlays;
-    }
-
     pub(super) fn play(&mut self) {
-        self.is_playing = true;
+        (self.is_playing, self.is_followed) = (true, false);
         self.wake();
     }
 
@@ -330,6 +314,7 @@ impl Session {
     pub(super) fn stand(&mut self, q: &[f64]) -> Result<()> {
         self.state.set(q)?;
         self.target = self.state.pose(self.options.end_effector);
+        self.is_target_placed = false;
         self.self_motion = None;
         self.wake();
         // The target is reached, and joints stay at the given values.
@@ -345,12 +330,16 @@ impl Session {
     }
 
     pub(super) fn aim(&mut self, desired: &TargetPose) -> std::result::Result<(), Complaint> {
-        self.target = desired.pose("target")?;
+        self.aim_at(desired.pose("target")?);
+        Ok(())
+    }
+
+    pub(super) fn aim_at(&mut self, target: Pose) {
+        (self.target, self.is_target_placed) = (target, true);
         // Velocities are kept, so that a dragged target is followed smoothly.
         self.driven = None;
         (self.last, self.trouble) = (None, None);
         self.is_resting = false;
-        Ok(())
     }
 
     /// Sets new options; there is no servo if the actuated joints do not control the tool.

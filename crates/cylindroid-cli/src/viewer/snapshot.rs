@@ -1,4 +1,4 @@
-//! The message `state`: the current state of a session.
+//! The message `state`: the current state of a session, as one of its clients sees it.
 
 use std::collections::BTreeMap;
 
@@ -9,6 +9,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::bodies::DistancesJson;
+use super::client_view::ClientView;
 use super::json::{PoseJson, text};
 use super::measures::Measures;
 use super::overlays::{Shown, shown};
@@ -27,7 +28,7 @@ struct StateJson<'a> {
     tool: PoseJson,
     target: PoseJson,
     error: ErrorJson,
-    servo: ServoJson,
+    servo: &'a ServoJson,
     singular: Option<SingularJson>,
     outside_limits: Vec<usize>,
     loops: Vec<LoopJson>,
@@ -92,11 +93,28 @@ struct ClosureErrorJson {
     closed: bool,
 }
 
-/// The message `state`.
-pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
-    let servo = servo(session);
-    let measures = Measures::of(session);
-    session.find_near()?;
+/// The parts of a state that are computed once for all clients.
+#[derive(Debug)]
+pub(super) struct Common {
+    servo: ServoJson,
+    measures: Option<Measures>,
+}
+
+impl Common {
+    pub(super) fn of(session: &mut Session) -> Self {
+        let servo = servo(session);
+        Self { servo, measures: Measures::of(session) }
+    }
+}
+
+/// The message `state` for a client.
+pub(super) fn snapshot(
+    session: &mut Session,
+    Common { servo, measures }: &Common,
+    view: &ClientView,
+    seq: u64,
+) -> Result<String> {
+    session.find_near(view.margin)?;
     let session = &*session;
     let (mechanism, state, options) = (session.mechanism(), session.state(), session.options());
     let poses: Vec<Pose> = mechanism
@@ -120,11 +138,11 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
     });
     let closure_error =
         if mechanism.is_closed() { Some(LoopClosureError::of(state)?) } else { None };
-    let overlays = session.overlays().iter();
+    let overlays = view.overlays.iter();
     Ok(text(&StateJson {
         seq,
         time: session.time(),
-        ack: session.ack(),
+        ack: view.ack.as_ref(),
         playing: session.is_playing(),
         q: state.q(),
         links: poses.iter().map(|p| (*p).into()).collect(),
@@ -150,7 +168,7 @@ pub(super) fn snapshot(session: &mut Session, seq: u64) -> Result<String> {
         }),
         overlays: overlays.map(|o| (o.name(), shown(*o, session, measures.as_ref()))).collect(),
         obstacles: session.obstacles().iter().map(|o| o.world_from_shape.into()).collect(),
-        distances: session.distances(),
+        distances: session.distances(view.margin),
     }))
 }
 
@@ -169,7 +187,11 @@ fn servo(session: &Session) -> ServoJson {
         return told("unavailable", None, fault.to_string());
     }
     if !session.is_playing() {
-        return told("paused", None, "The servo is paused.".to_owned());
+        let why = match session.is_followed() {
+            true => "A program sets the configuration.",
+            false => "The servo is paused.",
+        };
+        return told("paused", None, why.to_owned());
     }
     let moving = match session.twist() {
         Some(Twist::ZERO) => "Braking.",

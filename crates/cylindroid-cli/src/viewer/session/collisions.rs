@@ -2,7 +2,7 @@
 
 use cylindroid::collision::CollisionModel;
 use cylindroid::control::CollisionAvoidance;
-use cylindroid::{Pose, Result};
+use cylindroid::{Error, Pose, Result};
 
 use super::super::avoidance::Avoidance;
 use super::super::bodies::DistancesJson;
@@ -19,14 +19,14 @@ impl Session {
         self.bodies.obstacles()
     }
 
-    /// Finds the near pairs of the state, if they are asked for.
-    pub(in super::super) fn find_near(&mut self) -> Result<()> {
-        self.bodies.find_near(&self.state)
+    /// Finds the pairs of the state that are closer than `margin` (m), if one is given.
+    pub(in super::super) fn find_near(&mut self, margin: Option<f64>) -> Result<()> {
+        self.bodies.find_near(&self.start, &self.state, margin)
     }
 
-    /// The near pairs that were found, if they are asked for.
-    pub(in super::super) fn distances(&self) -> Option<DistancesJson<'_>> {
-        self.bodies.distances()
+    /// The near pairs that were found for this margin (m).
+    pub(in super::super) fn distances(&self, margin: Option<f64>) -> Option<DistancesJson<'_>> {
+        self.bodies.distances(margin)
     }
 
     /// Avoids collisions with this least distance and margin (m), or does not.
@@ -45,9 +45,10 @@ impl Session {
         Ok(())
     }
 
-    /// Includes pairs closer than `margin` (m) in the states, or none.
-    pub(in super::super) fn show_distances(&mut self, margin: Option<f64>) -> Result<()> {
-        self.bodies.show(&self.start, margin)
+    /// Refuses a margin (m) that is not positive, and models without distances.
+    pub(in super::super) fn check_margin(&mut self, margin: f64) -> Result<()> {
+        Error::check_positive("margin", margin)?;
+        self.bodies.model(&self.start).map(|_| ())
     }
 
     pub(in super::super) fn add_obstacle(&mut self, obstacle: ObstacleArg) -> Result<()> {

@@ -9,6 +9,7 @@ mod motion;
 mod obstacles;
 mod refused;
 mod served;
+mod shared;
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -64,9 +65,14 @@ impl Server {
     }
 
     pub(crate) fn client(&self) -> Client {
+        self.client_of("")
+    }
+
+    /// With this query in its address.
+    fn client_of(&self, query: &str) -> Client {
         let stream = TcpStream::connect(self.address()).unwrap();
         stream.set_read_timeout(Some(WAIT)).unwrap();
-        let request = format!("ws://{}/ws", self.address()).into_client_request().unwrap();
+        let request = format!("ws://{}/ws{query}", self.address()).into_client_request().unwrap();
         let (socket, _) = client(request, stream).unwrap();
         Client { socket }
     }
