@@ -10,9 +10,10 @@ use numpy::{
     Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 use pyo3::{IntoPyObjectExt, intern};
 
+use crate::arrow::Shaped;
 use crate::error::{Failure, Result, unfit};
 
 /// An array on its way out.
@@ -26,29 +27,52 @@ const LONG: usize = 4;
 
 /// Numbers of an argument: C-contiguous, aligned, f64. Borrowed where the array is that already.
 #[derive(Debug)]
-pub(crate) struct Numbers<'py>(PyReadonlyArrayDyn<'py, f64>);
+pub(crate) struct Numbers<'py>(Memory<'py>);
+
+/// Whose memory it is.
+#[derive(Debug)]
+enum Memory<'py> {
+    Numpy(PyReadonlyArrayDyn<'py, f64>),
+    Arrow(Shaped),
+}
 
 impl<'a, 'py> FromPyObject<'a, 'py> for Numbers<'py> {
     type Error = PyErr;
 
     fn extract(object: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        Self::of(object).map_err(|error| unfit(object.py(), error))
+        Self::of(&object).map_err(|error| unfit(object.py(), error))
     }
 }
 
 impl<'py> Numbers<'py> {
-    fn of(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+    fn of(object: &Bound<'py, PyAny>) -> PyResult<Self> {
         if let Ok(array) = object.cast::<PyArrayDyn<f64>>()
             && array.is_c_contiguous()
             && array.is_aligned()
         {
-            return Ok(Self(array.try_readonly()?));
+            return Ok(Self(Memory::Numpy(array.try_readonly()?)));
         }
         let py = object.py();
         let numpy = py.import(intern!(py, "numpy"))?;
-        let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
+        // What numpy does not know as an array may hand its memory out.
+        let foreign = is_foreign(object)?;
+        if foreign && let Some(numbers) = Shaped::from_python(object)? {
+            return Ok(Self(Memory::Arrow(numbers)));
+        }
+        let take = match foreign && object.hasattr(intern!(py, "__dlpack__"))? {
+            true => intern!(py, "from_dlpack"),
+            false => intern!(py, "asarray"),
+        };
+        let array = numpy.call_method1(take, (object,))?;
         let kind: String =
             array.getattr(intern!(py, "dtype"))?.getattr(intern!(py, "kind"))?.extract()?;
+        // Rows of Arrow, which numpy takes for objects.
+        if kind == "O"
+            && !foreign
+            && let Some(numbers) = Shaped::from_python(object)?
+        {
+            return Ok(Self(Memory::Arrow(numbers)));
+        }
         // Lists that are empty, and numbers: what becomes f64 without losing a part.
         if !matches!(kind.as_str(), "b" | "i" | "u" | "f") {
             let dtype = array.getattr(intern!(py, "dtype"))?;
@@ -58,18 +82,38 @@ impl<'py> Numbers<'py> {
         options.set_item(intern!(py, "dtype"), intern!(py, "float64"))?;
         options.set_item(intern!(py, "requirements"), ["C", "A"])?;
         let array = numpy.call_method(intern!(py, "require"), (array,), Some(&options))?;
-        Ok(Self(array.cast::<PyArrayDyn<f64>>()?.try_readonly()?))
+        Ok(Self(Memory::Numpy(array.cast::<PyArrayDyn<f64>>()?.try_readonly()?)))
+    }
+}
+
+/// True of objects that numpy reads as a sequence of objects, or not at all.
+pub(crate) fn is_foreign(object: &Bound<'_, PyAny>) -> PyResult<bool> {
+    if object.cast::<PyList>().is_ok() || object.cast::<PyTuple>().is_ok() {
+        return Ok(false);
+    }
+    Ok(!object.hasattr(intern!(object.py(), "__array__"))?)
+}
+
+impl From<Shaped> for Numbers<'_> {
+    fn from(numbers: Shaped) -> Self {
+        Self(Memory::Arrow(numbers))
     }
 }
 
 impl Numbers<'_> {
     pub(crate) fn shape(&self) -> &[usize] {
-        self.0.shape()
+        match &self.0 {
+            Memory::Numpy(array) => array.shape(),
+            Memory::Arrow(numbers) => &numbers.shape,
+        }
     }
 
     pub(crate) fn values(&self) -> &[f64] {
-        // Contiguous by construction.
-        self.0.as_slice().unwrap_or_default()
+        match &self.0 {
+            // Contiguous by construction.
+            Memory::Numpy(array) => array.as_slice().unwrap_or_default(),
+            Memory::Arrow(numbers) => &numbers.values,
+        }
     }
 
     pub(crate) fn shape_text(&self) -> String {
@@ -285,7 +329,7 @@ fn zeros<'py>(py: Python<'py>, sizes: &[usize]) -> Result<Array<'py>> {
     if total.is_some_and(|t| t <= MANY) {
         return Ok(PyArrayDyn::zeros(py, sizes, false));
     }
-    let shape = pyo3::types::PyTuple::new(py, sizes)?;
+    let shape = PyTuple::new(py, sizes)?;
     let array = py.import(intern!(py, "numpy"))?.call_method1(intern!(py, "zeros"), (shape,))?;
     Ok(array.cast_into().map_err(PyErr::from)?)
 }

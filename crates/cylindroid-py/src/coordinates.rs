@@ -2,8 +2,9 @@
 //! columns with their names in any order.
 //!
 //! Arrays and lists have places; whatever has names (dicts, frames and rows of pandas, frames of
-//! polars, tables of pyarrow) is read by them and never by place. Labels 0, 1, 2, ... of pandas are
-//! places. No library of frames is imported: they are known by their methods.
+//! polars, tables of pyarrow and of whatever else hands out Arrow) is read by them and never by
+//! place. Labels 0, 1, 2, ... of pandas are places. No library of frames is imported: they are known
+//! by their methods.
 
 use std::cell::OnceCell;
 
@@ -13,7 +14,8 @@ use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
 
-use crate::arrays::Numbers;
+use crate::arrays::{Numbers, is_foreign};
+use crate::arrow::Table;
 use crate::error::{Failure, Result, unfit};
 
 /// An argument with a number for each coordinate of a mechanism, of one configuration or of many.
@@ -23,7 +25,42 @@ pub(crate) struct Coordinates<'py>(Kind<'py>);
 #[derive(Debug)]
 enum Kind<'py> {
     Places(Numbers<'py>),
-    Names { columns: Bound<'py, PyAny>, labels: Vec<Bound<'py, PyAny>>, ordered: OnceCell<Ordered> },
+    Names { columns: Columns<'py>, ordered: OnceCell<Ordered> },
+}
+
+/// Columns with labels.
+#[derive(Debug)]
+enum Columns<'py> {
+    Python { object: Bound<'py, PyAny>, labels: Vec<Bound<'py, PyAny>> },
+    Arrow(Table),
+}
+
+impl<'py> Columns<'py> {
+    /// The labels that are text.
+    fn texts(&self) -> Vec<Option<String>> {
+        match self {
+            Self::Python { labels, .. } => {
+                let text = |label: &Bound<'_, PyAny>| label.cast::<PyString>().ok()?.extract().ok();
+                labels.iter().map(text).collect()
+            }
+            Self::Arrow(table) => table.names().map(|name| Some(name.to_owned())).collect(),
+        }
+    }
+
+    /// A label as a message shows it.
+    fn label(&self, place: usize) -> String {
+        match self {
+            Self::Python { labels, .. } => labels[place].to_string(),
+            Self::Arrow(table) => table.names().nth(place).unwrap_or_default().to_owned(),
+        }
+    }
+
+    fn read(&self, place: usize) -> Result<Numbers<'py>> {
+        Ok(match self {
+            Self::Python { object, labels } => object.get_item(&labels[place])?.extract()?,
+            Self::Arrow(table) => table.column(place)?.into(),
+        })
+    }
 }
 
 /// Rows in the order of the coordinates; `count` of many configurations.
@@ -40,22 +77,28 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Coordinates<'py> {
         if object.cast::<PyArrayDyn<f64>>().is_ok() {
             return Ok(Self(Kind::Places(object.extract()?)));
         }
-        Ok(Self(match labels(&object).map_err(|error| unfit(object.py(), error))? {
+        Ok(Self(match columns(&object).map_err(|error| unfit(object.py(), error))? {
             None => Kind::Places(object.extract()?),
-            Some(labels) => {
-                Kind::Names { columns: object.to_owned(), labels, ordered: OnceCell::new() }
-            }
+            Some(columns) => Kind::Names { columns, ordered: OnceCell::new() },
         }))
     }
 }
 
-/// The labels of columns with names.
-fn labels<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Vec<Bound<'py, PyAny>>>> {
+/// The columns of an object that has names.
+fn columns<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Columns<'py>>> {
     let py = object.py();
     let has_places = object.cast::<PyList>().is_ok()
         || object.cast::<PyTuple>().is_ok()
         || object.cast::<PyUntypedArray>().is_ok();
-    if has_places || !object.hasattr(intern!(py, "__getitem__"))? {
+    if has_places {
+        return Ok(None);
+    }
+    if is_foreign(object)?
+        && let Some(table) = Table::of(object)?
+    {
+        return Ok(Some(Columns::Arrow(table)));
+    }
+    if !object.hasattr(intern!(py, "__getitem__"))? {
         return Ok(None);
     }
     // pyarrow; mappings and pandas, of which a row has its labels as keys too; polars.
@@ -75,7 +118,7 @@ fn labels<'py>(object: &Bound<'py, PyAny>) -> PyResult<Option<Vec<Bound<'py, PyA
     let is_place =
         |(i, label): (usize, &Bound<'py, PyAny>)| label.extract().is_ok_and(|k: usize| k == i);
     let has_places = object.cast::<PyDict>().is_err() && labels.iter().enumerate().all(is_place);
-    Ok(if has_places { None } else { Some(labels) })
+    Ok(if has_places { None } else { Some(Columns::Python { object: object.clone(), labels }) })
 }
 
 impl Coordinates<'_> {
@@ -106,13 +149,13 @@ impl Coordinates<'_> {
     }
 
     fn ordered(&self, mechanism: &Mechanism, name: &'static str) -> Result<&Ordered> {
-        let Kind::Names { columns, labels, ordered } = &self.0 else {
+        let Kind::Names { columns, ordered } = &self.0 else {
             return Err(Failure::kind(format!("{name}: columns with names are needed")));
         };
         match ordered.get() {
             Some(ordered) => Ok(ordered),
             None => {
-                let found = by_name(mechanism, name, columns, labels)?;
+                let found = by_name(mechanism, name, columns)?;
                 Ok(ordered.get_or_init(|| found))
             }
         }
@@ -123,15 +166,11 @@ impl Coordinates<'_> {
 fn by_name(
     mechanism: &Mechanism,
     argument: &'static str,
-    columns: &Bound<'_, PyAny>,
-    labels: &[Bound<'_, PyAny>],
+    columns: &Columns<'_>,
 ) -> Result<Ordered> {
     // As in the motions of `move`, which have q and qd side by side.
     let prefix = if argument == "qd" { "qd." } else { "q." };
-    let texts: Vec<Option<String>> = labels
-        .iter()
-        .map(|label| label.cast::<PyString>().ok().and_then(|text| text.extract().ok()))
-        .collect();
+    let texts = columns.texts();
     let bare = |text: &str| text.strip_prefix(prefix).unwrap_or(text).to_owned();
     let coordinates = mechanism.coordinates();
     let mut read: Vec<Numbers<'_>> = Vec::with_capacity(coordinates.len());
@@ -146,10 +185,10 @@ fn by_name(
                 let reason = format!("several columns are '{}'", c.name);
                 return Err(Failure::option(argument, "the columns", reason));
             }
-            (None, _) => return Err(missing(mechanism, argument, &c.name, labels, &texts)),
+            (None, _) => return Err(missing(mechanism, argument, &c.name, columns, &texts)),
         };
-        let column = columns.get_item(&labels[place]).and_then(|column| column.extract());
-        let numbers: Numbers<'_> = column.map_err(|error: PyErr| {
+        let numbers = columns.read(place).map_err(|failure| {
+            let error = PyErr::from(failure);
             Failure::option(argument, format!("column '{}'", c.name), error.to_string())
         })?;
         read.push(numbers);
@@ -179,16 +218,16 @@ fn missing(
     mechanism: &Mechanism,
     argument: &'static str,
     name: &str,
-    labels: &[Bound<'_, PyAny>],
+    columns: &Columns<'_>,
     texts: &[Option<String>],
 ) -> Failure {
     let known: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
-    let others = labels.iter().zip(texts).filter(|(_, text)| {
+    let others = texts.iter().enumerate().filter(|(_, text)| {
         !text.as_ref().is_some_and(|text| {
             known.iter().any(|k| k == text || text.split_once('.').is_some_and(|(_, b)| b == *k))
         })
     });
-    let others: Vec<String> = others.take(8).map(|(label, _)| label.to_string()).collect();
+    let others: Vec<String> = others.take(8).map(|(i, _)| columns.label(i)).collect();
     let others = match others.is_empty() {
         true => String::new(),
         false => format!("; columns that are no coordinates: {}", others.join(", ")),

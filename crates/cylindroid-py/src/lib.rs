@@ -7,8 +7,10 @@
 //! Python user.
 
 mod arrays;
+mod arrow;
 mod closed;
 mod collision;
+mod columns;
 mod control;
 mod coordinates;
 mod error;
@@ -45,6 +47,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::collision::{PyCollisionModel, PyDistances};
+    #[pymodule_export]
+    use crate::columns::PyColumns;
     #[pymodule_export]
     use crate::control::{
         PyAdmittance, PyHybridCommand, PyHybridController, PyInternalForceCommand,

@@ -414,6 +414,7 @@ def methods(grip):
         ("with_tool", PANDA, {"frame": "link4"}),
         ("track_path", FIVE_BAR,
          {"start": FIVE_BAR.home, "goal": {"q1": 0.1}, "step": 0.1, "least_distance": 0.01}),
+        ("columns", PANDA, n),
         ("ordered", PANDA, n),
         ("outside_limits", PANDA, n),
         ("distances", PANDA, {**n, "margin": 0.2, "srdf": None, "meshes": "convex_hull"}),

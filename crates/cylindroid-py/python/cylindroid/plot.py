@@ -16,6 +16,7 @@ from . import Mechanism, Screw, ScrewSystem, Spectrum, Trajectory
 from ._conics import conics
 from ._figure import axes_of, equal_scales, is_spatial, pyplot, write_labels
 from ._maps import map
+from ._skeleton import drawn_joints, moving_links, points_of_links, polygon, slides
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,16 +68,6 @@ def frame(pose: ArrayLike, ax: Any = None, size: float = 0.1, name: str | None =
     return ax
 
 
-def _polygon(points: NDArray[Any]) -> NDArray[Any]:
-    """The points of a link in the order of their angle about the middle; two are a line."""
-    if len(points) < 3:
-        return points
-    away = points - points.mean(0)
-    first, second = np.linalg.svd(away)[2][:2]
-    order = np.argsort(np.arctan2(away @ second, away @ first))
-    return points[[*order, order[0]]]
-
-
 def _body(ax: Any, points: NDArray[Any], label: str) -> None:
     """A held body: filled between its points, with round corners."""
     style = {"color": _BODY, "solid_capstyle": "round", "solid_joinstyle": "round"}
@@ -112,34 +103,20 @@ def mechanism(robot: Mechanism, q: ArrayLike | None = None, ax: Any = None) -> A
     ax = axes_of(ax, space=ax is None and robot.dimension == 3)
     d = 3 if is_spatial(ax) else 2
     q = robot.home if q is None else q
-    # A free body is bound by nothing that could be drawn.
-    joints = [(i, j) for i, j in enumerate(robot.joints) if j.kind not in ("free", "planar")]
+    joints = drawn_joints(robot)
     on_parent, on_child = (robot.joint_axes(q, side)[:, 0, :d] for side in ("parent", "child"))
-    moving = {joint.child for joint in robot.joints if not joint.closes_loop}
-    near = 1e-6 * robot.reach
+    moving = moving_links(robot)
     contacts = robot.contact_points(q)[:, :, :d]
-    points: dict[str, list[NDArray[Any]]] = {}
-
-    def add(link: str, point: NDArray[Any]) -> None:
-        known = points.setdefault(link, [])
-        if all(np.linalg.norm(point - p) > near for p in known):
-            known.append(point)
-
-    for i, joint in joints:
-        add(joint.parent, on_parent[i])
-        add(joint.child, on_child[i])
-        if np.linalg.norm(on_parent[i] - on_child[i]) > near:  # a slide, or a loop that is open
-            ax.plot(*np.transpose([on_parent[i], on_child[i]]), color="0.5", lw=2)
-    for links, ends in zip(robot.contact_links, contacts):
-        for link, point in zip(links, ends):
-            add(link, point)
+    points = points_of_links(robot, on_parent, on_child, contacts)
+    for line in slides(robot, on_parent, on_child):
+        ax.plot(*line.T, color="0.5", lw=2)
     guided = {link for _, joint in joints for link in (joint.parent, joint.child)}
     touched = {link for links in robot.contact_links for link in links}
     for link, of_link in points.items():
         if link in touched - guided and link in moving:
-            _body(ax, _polygon(np.array(of_link)), f"_{link}")
+            _body(ax, polygon(np.array(of_link)), f"_{link}")
         elif link in moving and len(of_link) > 1:
-            line = _polygon(np.array(of_link))
+            line = polygon(np.array(of_link))
             ax.plot(*line.T, color="0.3", lw=3, solid_capstyle="round", label=f"_{link}")
     style = {"depthshade": False} if d == 3 else {"zorder": 3}
     shown = [(i, j) for i, j in joints if j.coordinates or j.mimic or j.closes_loop]

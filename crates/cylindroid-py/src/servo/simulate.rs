@@ -61,8 +61,8 @@ impl PyServo {
         let q = q.vector(running.servo.mechanism(), "q")?;
         let servo = &mut running.servo;
         servo.reset();
-        let (n, dt) = (servo.mechanism().n(), servo.options().dt);
-        let mut trajectory = record.then(|| PyTrajectory::of(n));
+        let dt = servo.options().dt;
+        let mut trajectory = record.then(|| PyTrajectory::of(servo.mechanism()));
         let outcome = py.detach(|| {
             let observe = |sample: TrajectorySample<'_>| {
                 if let Some(trajectory) = &mut trajectory {
