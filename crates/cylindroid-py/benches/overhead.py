@@ -23,19 +23,21 @@ def fresh(shape):
 
 
 def main():
-    print(f"{'':28}{'one call':>12}{'in a batch':>14}  (ns for each configuration)")
+    title = f"{'':28}{'one call':>12}{'in a batch':>14}{'with out=':>12}"
+    print(f"{title}  (ns for each configuration)")
     rng, seeds = np.random.default_rng(0), itertools.count(1)
     for name in ("panda", "ur5e"):
         robot = cy.load(name)
         q, Q = robot.home, rng.uniform(-1, 1, (100_000, robot.n))
         J = robot.jacobian(q)
-        for what, one, many in [
-            ("fk", lambda: robot.fk(q), lambda: robot.fk(Q)),
-            ("jacobian", lambda: robot.jacobian(q), lambda: robot.jacobian(Q)),
+        for what, call, out in [
+            ("fk", robot.fk, np.empty((len(Q), 4, 4))),
+            ("jacobian", robot.jacobian, np.empty((len(Q), 6, robot.n))),
         ]:
-            single = nanoseconds(one)
-            batch = nanoseconds(many, number=1) / len(Q)
-            print(f"{name + ' ' + what:28}{single:12.0f}{batch:14.1f}")
+            single = nanoseconds(lambda: call(q))
+            batch = nanoseconds(lambda: call(Q), number=1) / len(Q)
+            written = nanoseconds(lambda: call(Q, out=out), number=1) / len(Q)
+            print(f"{name + ' ' + what:28}{single:12.0f}{batch:14.1f}{written:12.1f}")
         batch = nanoseconds(lambda: fresh((len(Q), 6, robot.n)), number=1) / len(Q)
         print(f"{'  its memory alone':28}{'':12}{batch:14.1f}")
         print(f"{name + ' pinv':28}{nanoseconds(lambda: cy.pinv(J)):12.0f}")

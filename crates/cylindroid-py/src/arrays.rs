@@ -290,13 +290,30 @@ pub(crate) fn written<'py>(
     shape: &[usize],
     write: impl FnOnce(&mut [f64]) + Send,
 ) -> Result<Array<'py>> {
+    written_to(py, None, count, shape, write)
+}
+
+/// [`written`] to an array of the caller, the argument `out`, if there is one.
+pub(crate) fn written_to<'py>(
+    py: Python<'py>,
+    out: Option<Bound<'py, PyAny>>,
+    count: Option<usize>,
+    shape: &[usize],
+    write: impl FnOnce(&mut [f64]) + Send,
+) -> Result<Array<'py>> {
     let mut sizes = [0; 4];
     let lead = usize::from(count.is_some());
     sizes[0] = count.unwrap_or(0);
     sizes[lead..lead + shape.len()].copy_from_slice(shape);
     let sizes = &sizes[..lead + shape.len()];
-    let array = zeros(py, sizes)?;
-    let mut out = array.try_readwrite().map_err(PyErr::from)?;
+    let array = match out {
+        None => zeros(py, sizes)?,
+        Some(out) => place_of(out, sizes)?,
+    };
+    let mut out = array.try_readwrite().map_err(|error| {
+        let reason = "it is written while another argument, or another call, reads it";
+        Failure::option("out", error.to_string(), reason)
+    })?;
     let values = out.as_slice_mut().map_err(PyErr::from)?;
     if count.is_some_and(|n| n >= LONG) {
         py.detach(|| write(values));
@@ -312,15 +329,44 @@ pub(crate) fn written_rows<'py>(
     py: Python<'py>,
     count: Option<usize>,
     shape: &[usize],
+    write: impl FnMut(usize, &mut [f64]) -> cylindroid::Result<()> + Send,
+) -> Result<Array<'py>> {
+    written_rows_to(py, None, count, shape, write)
+}
+
+/// [`written_to`] row by row.
+pub(crate) fn written_rows_to<'py>(
+    py: Python<'py>,
+    out: Option<Bound<'py, PyAny>>,
+    count: Option<usize>,
+    shape: &[usize],
     mut write: impl FnMut(usize, &mut [f64]) -> cylindroid::Result<()> + Send,
 ) -> Result<Array<'py>> {
     let width = shape.iter().product::<usize>().max(1);
     let mut result = Ok(());
-    let array = written(py, count, shape, |out| {
+    let array = written_to(py, out, count, shape, |out| {
         let mut rows = out.chunks_exact_mut(width).enumerate();
         result = rows.try_for_each(|(i, out)| write(i, out));
     })?;
     result?;
+    Ok(array)
+}
+
+/// An array of the caller that can hold a result.
+fn place_of<'py>(out: Bound<'py, PyAny>, sizes: &[usize]) -> Result<Array<'py>> {
+    let array = out.cast_into::<PyArrayDyn<f64>>().map_err(|error| {
+        let what = error.into_inner();
+        let kind = what.get_type().name().map_or_else(|_| String::new(), |name| name.to_string());
+        Failure::kind(format!("out: a numpy array of float64 is needed, not {kind}"))
+    })?;
+    if array.shape() != sizes {
+        let reason = format!("the result has shape {}", shape_text(sizes));
+        return Err(Failure::option("out", shape_text(array.shape()), reason));
+    }
+    if !array.is_c_contiguous() || !array.is_aligned() {
+        let reason = "its numbers must lie in C order without gaps (numpy.ascontiguousarray)";
+        return Err(Failure::option("out", "a view of another array", reason));
+    }
     Ok(array)
 }
 

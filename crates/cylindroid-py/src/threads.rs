@@ -6,7 +6,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use cylindroid::kinematics::KinematicsBatch;
-use pyo3::Python;
+use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::arrays::{self, Array};
@@ -15,9 +15,10 @@ use crate::error::{Failure, Result};
 /// The pool, and the process that it is of.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// [`arrays::written`] by a batch of the library.
-pub(crate) fn written<'py>(
+/// [`arrays::written_to`] by a batch of the library.
+pub(crate) fn written_to<'py>(
     py: Python<'py>,
+    out: Option<Bound<'py, PyAny>>,
     count: Option<usize>,
     shape: &[usize],
     write: impl FnOnce(&mut [f64]) -> cylindroid::Result<()> + Send,
@@ -25,7 +26,7 @@ pub(crate) fn written<'py>(
     // Short ones stay on the thread that asks.
     let pool = if count.unwrap_or(1) > KinematicsBatch::CHUNK { Some(pool()?) } else { None };
     let mut result = Ok(());
-    let array = arrays::written(py, count, shape, |out| {
+    let array = arrays::written_to(py, out, count, shape, |out| {
         result = match pool {
             Some(pool) => pool.install(|| write(out)),
             None => write(out),

@@ -860,7 +860,11 @@ class Mechanism:
     @property
     def upper(self) -> _Array: ...
     def fk(
-        self, q: ArrayLike, frame: str | None = None, tool: ArrayLike | None = None
+        self,
+        q: ArrayLike,
+        frame: str | None = None,
+        tool: ArrayLike | None = None,
+        out: _Array | None = None,
     ) -> _Array: ...
     def fk_all(self, q: ArrayLike) -> _Array: ...
     def joint_axes(self, q: ArrayLike, side: str = "parent") -> _Array: ...
@@ -871,6 +875,7 @@ class Mechanism:
         frame: str | None = None,
         reference: str = "local_world_aligned",
         tool: ArrayLike | None = None,
+        out: _Array | None = None,
     ) -> _Array: ...
     def hessian(
         self,

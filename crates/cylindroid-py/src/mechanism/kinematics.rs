@@ -58,6 +58,9 @@ impl PyMechanism {
     ///     One of `frames`. Default: `tool`.
     /// tool : array_like, (4, 4), optional
     ///     `frame_from_tool`, a tool point fixed to the frame.
+    /// out : ndarray, optional
+    ///     An array of float64 of the shape of the result, to be written and returned: new memory
+    ///     is up to half of the cost of a long batch.
     ///
     /// Returns
     /// -------
@@ -77,25 +80,26 @@ impl PyMechanism {
     /// >>> arm = cy.load("3r")
     /// >>> arm.fk([0.0, 0.0, 0.0])[:3, 3]
     /// array([0.8, 0. , 0.4])
-    #[pyo3(signature = (q, frame = None, tool = None))]
+    #[pyo3(signature = (q, frame = None, tool = None, out = None))]
     fn fk<'py>(
         &self,
         py: Python<'py>,
         q: Coordinates<'py>,
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         tool: Option<Numbers<'py>>,
+        out: Option<Bound<'py, PyAny>>,
     ) -> Result<Array<'py>> {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         if is_batch(&rows) {
             let batch = KinematicsBatch::new(&self.inner, of);
-            return threads::written(py, rows.count, &[4, 4], |out| {
+            return threads::written_to(py, out, rows.count, &[4, 4], |out| {
                 batch.poses_into(rows.values, out)
             });
         }
         // For one configuration the whole tree costs less than what a chain prepares.
         let mut state = self.inner.state(self.inner.home())?;
-        arrays::written_rows(py, rows.count, &[4, 4], |i, out| {
+        arrays::written_rows_to(py, out, rows.count, &[4, 4], |i, out| {
             state.set(rows.row(i))?;
             arrays::put_pose(state.pose(of), out);
             Ok(())
@@ -242,6 +246,9 @@ impl PyMechanism {
     ///     'local_world_aligned' (the frame's origin, the world's axes).
     /// tool : array_like, (4, 4), optional
     ///     `frame_from_tool`, a tool point fixed to the frame.
+    /// out : ndarray, optional
+    ///     An array of float64 of the shape of the result, to be written and returned: new memory
+    ///     is up to half of the cost of a long batch.
     ///
     /// Returns
     /// -------
@@ -265,7 +272,7 @@ impl PyMechanism {
     /// >>> panda = cy.load("panda")
     /// >>> panda.jacobian([panda.home] * 5, reference="local").shape
     /// (5, 6, 7)
-    #[pyo3(signature = (q, frame = None, reference = "local_world_aligned", tool = None))]
+    #[pyo3(signature = (q, frame = None, reference = "local_world_aligned", tool = None, out = None))]
     fn jacobian<'py>(
         &self,
         py: Python<'py>,
@@ -273,19 +280,20 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         #[pyo3(from_py_with = argument)] reference: &str,
         tool: Option<Numbers<'py>>,
+        out: Option<Bound<'py, PyAny>>,
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         if is_batch(&rows) {
             let batch = KinematicsBatch::new(&self.inner, of);
-            return threads::written(py, rows.count, &[6, n], |out| {
+            return threads::written_to(py, out, rows.count, &[6, n], |out| {
                 batch.jacobians_into(rows.values, reference, out)
             });
         }
         let mut state = self.inner.state(self.inner.home())?;
         let mut whole = Matrix::zeros(6, n);
-        arrays::written_rows(py, rows.count, &[6, n], |i, out| {
+        arrays::written_rows_to(py, out, rows.count, &[6, n], |i, out| {
             state.set(rows.row(i))?;
             state.jacobian_into(of, reference, &mut whole);
             arrays::put_rows(&whole, out);
