@@ -84,6 +84,7 @@ cargo xtask <task>
   instructions [--write]
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
+  man DIR   writes the manual pages of the command line
   figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {
@@ -132,6 +133,7 @@ fn run() -> Result<()> {
         Some("instructions") => {
             instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
         }
+        Some("man") => steps::man(std::env::args().nth(2).as_deref()),
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

@@ -195,6 +195,12 @@ pub(crate) fn limits(millions: Option<&str>, first: Option<&str>) -> Result<()> 
     run(test.env("CYLINDROID_LIMIT_SEED", first.unwrap_or("0")))
 }
 
+/// The manual pages, by the command line itself.
+pub(crate) fn man(folder: Option<&str>) -> Result<()> {
+    let folder = folder.context("name a folder: cargo xtask man DIR")?;
+    run(&mut cargo(&["run", "--quiet", "--package", "cylindroid-cli", "--", "man", folder]))
+}
+
 /// The figures of the README and the book, by the command line and the Python package.
 pub(crate) fn figures() -> Result<()> {
     let [to, rpy] = ["0.45,0.15,0.35", "3.1416,0,0.6"];

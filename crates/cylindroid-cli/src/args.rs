@@ -6,6 +6,7 @@ mod closed;
 mod distance;
 mod ik;
 pub(crate) mod inverses;
+mod manual;
 mod map;
 mod move_to;
 mod optimise;
@@ -20,6 +21,7 @@ pub(crate) use closed::{
 };
 pub(crate) use distance::{CollisionArgs, DistanceArgs};
 pub(crate) use ik::IkArgs;
+pub(crate) use manual::{CompletionsArgs, ManArgs};
 pub(crate) use map::MapArgs;
 pub(crate) use move_to::{
     InverseArgs, LawName, MoveArgs, NullSpaceName, PathArgs, ServoArgs, TargetArgs, TaskAxes,
@@ -121,6 +123,12 @@ pub(crate) enum Command {
     /// The web viewer: display a model, drag its tool or object, and monitor its measures
     #[command(long_about = view::ABOUT, after_long_help = view::EXAMPLES)]
     View(Box<ViewArgs>),
+    /// Completions of commands and options for a shell
+    #[command(long_about = manual::COMPLETIONS, after_long_help = manual::COMPLETIONS_EXAMPLES)]
+    Completions(CompletionsArgs),
+    /// Manual pages: one of the binary and one of each command
+    #[command(long_about = manual::MAN, after_long_help = manual::MAN_EXAMPLES)]
+    Man(ManArgs),
 }
 
 #[derive(Debug, Args)]

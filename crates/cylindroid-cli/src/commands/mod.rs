@@ -9,6 +9,7 @@ pub(crate) mod info;
 mod interrupt;
 pub(crate) mod inverse_selection;
 mod jacobian;
+mod manual;
 mod map;
 mod models;
 pub(crate) mod move_to;
@@ -46,5 +47,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Optimise(args) => optimise::run(args, style, out),
         Command::Map(args) => map::run(args, style, out),
         Command::View(args) => view::run(args, style, out),
+        Command::Completions(args) => manual::completions(args, style, out),
+        Command::Man(args) => manual::man(args, style, out),
     }
 }

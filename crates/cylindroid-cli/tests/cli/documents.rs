@@ -189,6 +189,8 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["stewart", "--over", "x=-1:1:9", "--over", "y=-1:1:9"],
         ],
         "grasp" => vec![vec![GRASP, "--torsion", "0.01"]],
+        "completions" => vec![vec!["bash"]],
+        "man" => vec![vec![concat!(env!("CARGO_TARGET_TMPDIR"), "/man1")]],
         _ => vec![vec![]],
     };
     all.into_iter().map(|more| with(&[], &more)).collect()

@@ -11,6 +11,7 @@ mod flags;
 mod fuzz;
 mod ik;
 mod inverses;
+mod manual;
 mod map;
 mod measured;
 mod motion;
