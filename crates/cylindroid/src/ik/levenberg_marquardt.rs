@@ -14,7 +14,6 @@
 //! Checked  tests/it/ik.rs, tests in this file
 
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
-use super::damped_step::{Damped, DampedProblem};
 use super::goal::Goal;
 use super::goal_rows::GoalRows;
 use super::half_space_rows::HalfSpaceRows;
@@ -22,6 +21,7 @@ use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, MAX_COORDINATES};
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, State};
+use crate::linalg::{Damped, DampedProblem};
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::clamp;
 use crate::task::HalfSpace;

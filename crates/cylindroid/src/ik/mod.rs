@@ -31,7 +31,6 @@ mod branches;
 mod closed_chain;
 mod closed_form;
 mod convergence;
-mod damped_step;
 mod goal;
 mod goal_rows;
 mod half_space_rows;

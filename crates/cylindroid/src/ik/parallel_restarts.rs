@@ -10,10 +10,10 @@
 //! Checked  src/ik/levenberg_marquardt.rs (against single restarts), tests/it/ik.rs
 
 use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
-use super::damped_step::{DampedProblem, by_rows};
 use super::options::IkOptions;
 use crate::kinematics::Serial;
 use crate::kinematics::serial_batched::{self, FrameAtTip, SinCos, tool_offset};
+use crate::linalg::{DampedProblem, damped_by_rows};
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Avx2, Lanes4};
@@ -252,8 +252,8 @@ fn step_within<R: SimdFloat>(
         let memory = (&mut gram[..m * m], &mut rest[..m]);
         // Repeated as a constant, so that the common size compiles to straight-line code.
         match m {
-            6 => by_rows(6, problem, memory, d),
-            _ => by_rows(m, problem, memory, d),
+            6 => damped_by_rows(6, problem, memory, d),
+            _ => damped_by_rows(m, problem, memory, d),
         };
         // 1 if the step would leave the limits, otherwise 0; zero columns never leave.
         let (mut out, mut any) = ([zero; MAX_COORDINATES], zero);

@@ -13,10 +13,9 @@
 //! Checked  tests/it/ik.rs::the_nearest_answer, src/ik/nearest.rs
 
 use super::convergence::is_reached;
-use super::damped_step::DampedProblem;
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
-use crate::linalg::dot;
+use crate::linalg::{DampedProblem, dot};
 use crate::scalar::clamp;
 
 /// Largest number of steps.

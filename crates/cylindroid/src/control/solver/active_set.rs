@@ -26,8 +26,9 @@ mod minimise;
 use std::ops::Range;
 
 use super::inequalities::Inequalities;
-use crate::linalg::{Matrix, dot, norm};
+use crate::linalg::{Basis, Matrix, dot, norm};
 
+pub(in crate::control) use free::Whole;
 pub(in crate::control) use level::Level;
 
 /// Most rounds of a level for each unknown and row, four times as many for the start [-]; then the
@@ -102,7 +103,7 @@ pub(in crate::control) struct ActiveSet {
     pub(in crate::control) inequalities: Inequalities,
     y: Vec<f64>,
     /// Orthonormal: of the rows of higher levels first, then of the working rows.
-    basis: Matrix,
+    basis: Basis,
     fixed: usize,
     working: Vec<Working>,
     /// Working rows in the basis: a column each, upper triangular after `fixed`.
@@ -128,7 +129,7 @@ impl ActiveSet {
         Self {
             inequalities,
             y: vec![0.0; n],
-            basis: Matrix::zeros(n, n),
+            basis: Basis::workspace(n),
             fixed: 0,
             working: Vec::with_capacity(n),
             triangle: Matrix::zeros(n, n),
@@ -248,12 +249,12 @@ impl ActiveSet {
         }
         let length = norm(&self.normal);
         self.direction.copy_from_slice(&self.normal);
-        project_out(&self.basis, place, &mut self.direction);
+        self.basis.project_out(place, &mut self.direction);
         let once = norm(&self.direction);
         if !(once > DEPENDENT * length) {
             return false;
         }
-        project_out(&self.basis, place, &mut self.direction);
+        self.basis.project_out(place, &mut self.direction);
         let size = norm(&self.direction);
         if !(size > 0.5 * DEPENDENT * length) {
             return false;
@@ -308,15 +309,6 @@ impl ActiveSet {
                 }
             }
         }
-    }
-}
-
-/// Removes the first columns of an orthonormal basis from x.
-fn project_out(basis: &Matrix, columns: usize, x: &mut [f64]) {
-    for k in 0..columns {
-        let column = basis.column(k);
-        let along = dot(column, x);
-        x.iter_mut().zip(column).for_each(|(x, b)| *x -= along * b);
     }
 }
 

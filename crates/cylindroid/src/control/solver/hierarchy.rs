@@ -6,11 +6,13 @@
 //!          A_k y = s b_k; as two levels, (1 - p p^T) A_k y = 0 and p^T A_k y = |b_k|, p = b_k / |b_k|;
 //!          of several tasks in a level each has its own p and s
 //! Shapes   A_k: m_k x n
+//!          A task is reflected so that p becomes its first axis: the rows across are independent
+//!          where those of the task are
 //! Valid    any rank; a direction that cannot be kept exactly is reported
 //! Source   Escande, Mansard & Wieber 2014; Flacco, De Luca & Khatib 2015 (scaling)
 //! Checked  src/control/solver/hierarchy/tests.rs
 
-use super::active_set::{ActiveSet, Level, Objective, Precision};
+use super::active_set::{ActiveSet, Level, Objective, Precision, Whole};
 use crate::linalg::{dot, norm};
 
 /// A level of tasks whose directions are preserved first.
@@ -26,9 +28,11 @@ pub(in crate::control) struct ScaledLevel {
     pub(in crate::control) scales: Vec<f64>,
     /// False for tasks that could not be kept along their targets.
     pub(in crate::control) are_straight: Vec<bool>,
-    /// The rows across the targets, and the row along each of them.
+    /// The rows across the targets, zeros after the last one, and the row along each target.
     across: Level,
     along: Level,
+    /// The first row across the target of each task, and their number at the end.
+    first_across: Vec<usize>,
 }
 
 /// Parts across the target below this share of it are roundings [-].
@@ -47,6 +51,7 @@ impl ScaledLevel {
             are_straight: vec![true; tasks],
             across: Level::new(m, n),
             along: Level::new(tasks, n),
+            first_across: vec![0; tasks + 1],
         }
     }
 
@@ -59,31 +64,43 @@ impl ScaledLevel {
 
     /// Splits each task; returns the largest of the targets.
     fn split(&mut self) -> f64 {
-        let Self { whole, first, left_aside, across, along, .. } = self;
+        let Self { whole, first, left_aside, across, along, first_across, .. } = self;
         whole.scale = whole.rows.frobenius_norm();
         (across.scale, along.scale) = (whole.scale, whole.scale);
-        across.target.fill(0.0);
-        let mut largest = 0.0_f64;
+        let (mut largest, mut place) = (0.0_f64, 0);
         for (k, ends) in first.windows(2).enumerate() {
             let rows = ends[0]..ends[1];
             let target = &whole.target[rows.clone()];
             let size = if left_aside[k] { 0.0 } else { norm(target) };
             largest = largest.max(size);
             along.target[k] = size;
+            first_across[k] = place;
+            // The reflection 1 - v v^T / (v_0 sign), v = p + sign e_1, takes p to -sign e_1.
+            let sign = 1_f64.copysign(target.first().copied().unwrap_or(0.0));
+            let count = match size {
+                _ if left_aside[k] => 0,
+                // Without a target a task is to rest: all of it is across.
+                0.0 => rows.len(),
+                _ => rows.len() - 1,
+            };
             for j in 0..whole.rows.cols() {
                 let column = &whole.rows.column(j)[rows.clone()];
                 let share = if size > 0.0 { dot(column, target) / size } else { 0.0 };
                 along.rows[(k, j)] = share;
-                let parts = across.rows.column_mut(j)[rows.clone()].iter_mut();
-                for ((x, a), b) in parts.zip(column).zip(target) {
-                    *x = match left_aside[k] {
-                        true => 0.0,
-                        // Without a target a task is to rest: all of it is across.
-                        false if size == 0.0 => *a,
-                        false => a - share * (b / size),
-                    };
+                let parts = across.rows.column_mut(j)[place..place + count].iter_mut();
+                if size > 0.0 {
+                    let part = (share + sign * column[0]) / (target[0].abs() + size);
+                    let rest = column.iter().zip(target).skip(1);
+                    parts.zip(rest).for_each(|(x, (a, b))| *x = a - part * b);
+                } else {
+                    parts.zip(column).for_each(|(x, a)| *x = *a);
                 }
             }
+            place += count;
+        }
+        first_across[first.len() - 1] = place;
+        for j in 0..whole.rows.cols() {
+            across.rows.column_mut(j)[place..].fill(0.0);
         }
         largest
     }
@@ -91,7 +108,7 @@ impl ScaledLevel {
     /// The shares that y has of the targets.
     fn load_shares(&mut self, y: &[f64], cut: f64, largest: f64) {
         let left = self.across.left(y);
-        for (k, ends) in self.first.windows(2).enumerate() {
+        for (k, ends) in self.first_across.windows(2).enumerate() {
             let size = self.along.target[k];
             let rest = norm(&left[ends[0]..ends[1]]);
             self.are_straight[k] = rest <= ACROSS * largest + cut;
@@ -136,8 +153,11 @@ impl ActiveSet {
         mut stops: impl FnMut(usize, f64) -> bool,
     ) -> bool {
         let largest = level.split();
-        self.minimise(Objective::Rows(&mut level.across), precision);
-        self.keep(&mut level.across, precision);
+        let rows = level.first_across[level.first.len() - 1];
+        if self.perform(&mut level.across, rows, 0.0) != Whole::Performed {
+            self.minimise(Objective::Rows(&mut level.across), precision);
+            self.keep(&mut level.across, precision);
+        }
         let cut = precision.rank * level.whole.scale * norm(self.point());
         self.minimise(Objective::Rows(&mut level.along), precision);
         let mut is_stopped = false;

@@ -13,7 +13,7 @@ use super::levels::{Member, Stack};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::solver::active_set::{FEASIBLE, Level};
+use crate::control::solver::active_set::{FEASIBLE, Level, Whole};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::saturation::{CURVATURE, LEAST_DAMPING, MIN_SCALE, STRAIGHT};
@@ -124,14 +124,24 @@ impl TaskServo {
                 member.error = error.sqrt();
             }
             let is_whole = is_first || members.iter().all(|m| !m.direction_changed);
-            if is_whole && self.set.solve_freely(whole, self.options.eps) {
-                members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (1.0, None));
-                *left_out = 0.0;
-                continue;
+            let ended = match is_whole {
+                true => self.set.solve_freely(whole, self.options.eps),
+                false if self.set.is_clear(whole, self.options.eps) => Whole::Stopped,
+                false => Whole::Unclear,
+            };
+            *left_out = 0.0;
+            match ended {
+                Whole::Performed => {
+                    members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (1.0, None));
+                    continue;
+                }
+                Whole::Stopped => {}
+                Whole::Unclear => {
+                    let size = norm(&whole.target);
+                    let missing = self.set.reduce_target(whole, self.options.eps);
+                    *left_out = if size > 0.0 { missing / size } else { 0.0 };
+                }
             }
-            let size = norm(&whole.target);
-            let missing = self.set.reduce_target(whole, self.options.eps);
-            *left_out = if size > 0.0 { missing / size } else { 0.0 };
             let causes = (&self.bounds[..], self.options.half_spaces.len(), &self.near[..]);
             let mut stop = None;
             // Tasks that keep their directions come first.

@@ -26,28 +26,33 @@ impl ActiveSet {
         let mut best: Option<(f64, Option<(usize, f64)>)> = None;
         let mut possible = 0;
         for round in 0..self.y.len() {
-            let columns = self.working.len();
-            level.project(&self.basis, columns);
-            level.svd.decompose_warm(&level.projected);
-            let mut rank = 0;
-            for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
-                let is_kept = s > precision.rank * level.scale;
-                *gain = if is_kept { 1.0 / s } else { 0.0 };
-                rank += usize::from(is_kept);
+            let (columns, m) = (self.working.len(), level.rows.rows());
+            if columns + possible > self.y.len() {
+                break; // the rest can no longer do the task
             }
+            let is_clear = self.load_rows(level, columns, m, precision.rank);
+            let rank = if is_clear { m } else { self.load_gains(level, columns, precision) };
             if round == 0 {
                 possible = rank;
             } else if rank < possible {
-                break; // the rest can no longer do the task
+                break;
             }
             // y(s) = particular + s direction
             self.load_clamped();
             level.residual.fill(0.0);
             level.rows.mul_vec_into(&self.normal, &mut level.residual);
             level.residual.iter_mut().for_each(|r| *r = -*r);
-            level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.gradient);
-            self.normal.iter_mut().zip(&self.gradient).for_each(|(p, g)| *p += g);
-            level.svd.apply_gains_into(&level.target, &level.gains, &mut self.direction);
+            if is_clear {
+                level.along.copy_from_slice(&level.residual);
+                level.add_least_motion(&self.basis, columns, m, &mut self.normal);
+                level.along.copy_from_slice(&level.target);
+                self.direction.fill(0.0);
+                level.add_least_motion(&self.basis, columns, m, &mut self.direction);
+            } else {
+                level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.gradient);
+                self.normal.iter_mut().zip(&self.gradient).for_each(|(p, g)| *p += g);
+                level.svd.apply_gains_into(&level.target, &level.gains, &mut self.direction);
+            }
             let size = norm(&self.direction);
             let (mut least, mut most) = (0.0_f64, (1.0, None));
             let mut worst: Option<(f64, usize, f64)> = None;
@@ -86,6 +91,19 @@ impl ActiveSet {
             }
         }
         best
+    }
+
+    /// The inverse singular values of the rows on what the working ones leave, and their number.
+    fn load_gains(&self, level: &mut Level, columns: usize, precision: Precision) -> usize {
+        level.project(&self.basis, columns);
+        level.svd.decompose_warm(&level.projected);
+        let mut rank = 0;
+        for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
+            let is_kept = s > precision.rank * level.scale;
+            *gain = if is_kept { 1.0 / s } else { 0.0 };
+            rank += usize::from(is_kept);
+        }
+        rank
     }
 
     /// The least point with the working rows at their bounds, into `normal`.

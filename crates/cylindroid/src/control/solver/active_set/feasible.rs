@@ -5,7 +5,7 @@
 //! Source   Goldfarb & Idnani 1983
 //! Checked  src/control/solver/hierarchy/tests.rs::the_start_is_the_nearest_feasible_point
 
-use super::{ActiveSet, DEPENDENT, FEASIBLE, ROUNDS, Use, project_out, solve_triangle};
+use super::{ActiveSet, DEPENDENT, FEASIBLE, ROUNDS, Use, solve_triangle};
 use crate::linalg::dot;
 
 impl ActiveSet {
@@ -50,8 +50,8 @@ impl ActiveSet {
                 self.load_multipliers_of_normal();
                 self.direction.copy_from_slice(&self.normal);
                 let columns = self.fixed + self.working.len();
-                project_out(&self.basis, columns, &mut self.direction);
-                project_out(&self.basis, columns, &mut self.direction);
+                self.basis.project_out(columns, &mut self.direction);
+                self.basis.project_out(columns, &mut self.direction);
                 let outside = dot(&self.direction, &self.direction);
                 let excess = sign * self.inequalities.value(row, &self.y)
                     - sign * self.inequalities.bound(row, sign);

@@ -1,107 +1,152 @@
-//! A level that no inequality stops: one orthogonalisation of its rows, without a decomposition.
+//! A level that is performed as a whole: one orthogonalisation of its rows, without a decomposition.
 //!
-//! Formula  A = C Q_0^T + L Q^T, Q_0 the basis of higher levels, L lower triangular;
-//!          y + Q L^-1 (b - A y) performs the level, and Q continues the basis
+//! Formula  A = C Q_0^T + L Q^T, Q_0 the basis of higher levels, L lower triangular (`Basis`);
+//!          y + Q L^-1 (b - A y) performs the level, and Q continues the basis; working rows stay at
+//!          their bounds and rows that are left are taken to theirs, one by one, by motions outside Q
 //! Valid    rows whose least singular value outside Q_0 is above a bound, for which 1 / |L^-1|_F is a
-//!          lower bound; no working rows; a solution within all inequalities. Otherwise nothing changes
+//!          lower bound; a solution within all inequalities. Otherwise nothing changes
+//! Why so   any point within all inequalities that performs the level is optimal for it, whichever
+//!          rows are at their bounds: lower levels release those that need not be
 //! Cost     of the order of m (k + m) n for m rows after k
-//! Source   Golub & Van Loan, Matrix Computations, 2013, 5.2.8 (modified Gram-Schmidt, twice)
 //! Checked  src/control/solver/hierarchy/tests.rs::free_levels_are_those_of_the_active_set
 
-use super::{ActiveSet, Level};
-use crate::linalg::{dot, norm};
+use super::{ActiveSet, DEPENDENT, Level, Use, Working};
 
-/// A row that keeps less than this share of its norm is orthogonalised again [-].
-const AGAIN: f64 = 0.5;
+/// Singular values below this share of the norm of the rows would cost the basis its orthogonality
+/// [-].
+const CLEAR: f64 = 1e-4;
+
+/// How a level ended that was to be performed as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::control) enum Whole {
+    Performed,
+    /// An inequality stops it; all its directions can be moved.
+    Stopped,
+    /// The singular values decide which of its directions can be moved.
+    Unclear,
+}
 
 impl ActiveSet {
     /// Performs a level as a whole if no inequality stops it and all its directions have singular
-    /// values above `eps` of the norm of its rows; false, without effect, otherwise.
-    pub(in crate::control) fn solve_freely(&mut self, level: &mut Level, eps: f64) -> bool {
-        let (m, n) = (level.rows.rows(), self.y.len());
-        if !self.working.is_empty() || self.fixed + m > n {
-            return false;
-        }
+    /// values above `eps` of the norm of its rows; without effect otherwise.
+    pub(in crate::control) fn solve_freely(&mut self, level: &mut Level, eps: f64) -> Whole {
         level.scale = level.rows.frobenius_norm();
-        if !self.orthogonalise(level) {
+        self.perform(level, level.rows.rows(), eps)
+    }
+
+    /// Performs the first m rows of a level, which has a scale.
+    pub(in crate::control::solver) fn perform(
+        &mut self,
+        level: &mut Level,
+        m: usize,
+        eps: f64,
+    ) -> Whole {
+        let is_clear = self.load_rows(level, self.fixed, m, eps);
+        let before = self.working.len();
+        if is_clear && self.move_freely(level, m) {
+            return Whole::Performed;
+        }
+        self.working.drain(before..).for_each(|w| self.uses[w.row] = Use::Free);
+        self.rebuild(0);
+        if is_clear { Whole::Stopped } else { Whole::Unclear }
+    }
+
+    /// True if all directions of a level have singular values above `eps` of the norm of its rows.
+    pub(in crate::control) fn is_clear(&mut self, level: &mut Level, eps: f64) -> bool {
+        level.scale = level.rows.frobenius_norm();
+        let is_clear = self.load_rows(level, self.fixed, level.rows.rows(), eps);
+        self.rebuild(0);
+        is_clear
+    }
+
+    /// Makes the first m rows columns of the basis from `first` on, orthonormal outside those before;
+    /// false if singular values below `eps` of the norm of the rows decide which directions count.
+    pub(super) fn load_rows(
+        &mut self,
+        level: &mut Level,
+        first: usize,
+        m: usize,
+        eps: f64,
+    ) -> bool {
+        if first + m > self.y.len() {
             return false;
         }
+        for i in 0..m {
+            let column = self.basis.column_mut(first + i).iter_mut();
+            column.enumerate().for_each(|(j, x)| *x = level.rows[(i, j)]);
+        }
+        let least = eps.max(CLEAR) * level.scale;
+        self.basis.orthonormalise(first, m, DEPENDENT, &mut level.lower)
+            && level.lower.square_of_inverse(m) * least * least < 1.0
+    }
+
+    /// Moves to a point within all inequalities that performs the rows, whose basis is loaded, and
+    /// keeps them; false, with further working rows, if none is found.
+    fn move_freely(&mut self, level: &mut Level, m: usize) -> bool {
         level.load_residual(&self.y);
-        // z = L^-1 (b - A y), and |L^-1|_F column by column.
-        let mut size = 0.0;
-        for k in 0..m {
-            level.along.fill(0.0);
-            level.along[k] = 1.0;
-            solve_lower(level, k);
-            size += dot(&level.along, &level.along);
-        }
-        let least = eps * level.scale;
-        // NaN as well.
-        if !(size * least * least < 1.0) {
-            return false;
-        }
         level.along.copy_from_slice(&level.residual);
-        solve_lower(level, 0);
-        self.direction.copy_from_slice(&self.y);
-        for (k, z) in level.along.iter().enumerate() {
-            let column = self.basis.column(self.fixed + k);
-            self.direction.iter_mut().zip(column).for_each(|(d, q)| *d += z * q);
-        }
-        let rows = 0..self.inequalities.len();
-        let within = |i| {
-            let value = self.inequalities.value(i, &self.direction);
-            value >= self.inequalities.lower[i] && value <= self.inequalities.upper[i]
-        };
-        if !rows.into_iter().all(within) {
+        self.gradient.copy_from_slice(&self.y);
+        level.add_least_motion(&self.basis, self.fixed, m, &mut self.gradient);
+        self.fixed += m;
+        let is_held = (0..self.working.len()).all(|k| {
+            let Working { row, sign } = self.working[k];
+            self.inequalities.write(row, sign, &mut self.normal);
+            self.multipliers[k] = 0.0;
+            self.append(self.fixed + k, Some(k)) && {
+                self.to_bound(k);
+                true
+            }
+        });
+        if !(is_held && self.take_to_bounds()) {
+            self.fixed -= m;
             return false;
         }
-        self.y.copy_from_slice(&self.direction);
-        self.fixed += m;
+        for (i, (y, x)) in self.y.iter_mut().zip(&self.gradient).enumerate() {
+            match self.uses.get(i) {
+                Some(Use::Fixed) if i < self.inequalities.boxed() => {}
+                _ => *y = *x,
+            }
+        }
+        for w in self.working.iter().filter(|w| w.row < self.inequalities.boxed()) {
+            self.y[w.row] = self.inequalities.bound(w.row, w.sign);
+        }
         true
     }
 
-    /// Continues the basis by the rows of the level, with L in the first columns of `projected`; false
-    /// if a row depends on others.
-    fn orthogonalise(&mut self, level: &mut Level) -> bool {
-        for i in 0..level.rows.rows() {
-            for (j, x) in self.normal.iter_mut().enumerate() {
-                *x = level.rows[(i, j)];
-            }
-            let whole = norm(&self.normal);
-            (0..i).for_each(|k| level.projected[(i, k)] = 0.0);
-            let mut before = whole;
-            for _ in 0..2 {
-                for k in 0..self.fixed + i {
-                    let column = self.basis.column(k);
-                    let along = dot(column, &self.normal);
-                    self.normal.iter_mut().zip(column).for_each(|(x, q)| *x -= along * q);
-                    if k >= self.fixed {
-                        level.projected[(i, k - self.fixed)] += along;
-                    }
+    /// Adds the rows that the point in `gradient` leaves, the worst first, and takes it to their
+    /// bounds; false if one of them depends on the others.
+    fn take_to_bounds(&mut self) -> bool {
+        loop {
+            let mut worst = (0.0, None);
+            for i in 0..self.inequalities.len() {
+                if matches!(self.uses[i], Use::Working | Use::Fixed) {
+                    continue;
                 }
-                let after = norm(&self.normal);
-                let is_done = after > AGAIN * before;
-                before = after;
-                if is_done {
-                    break;
+                let value = self.inequalities.value(i, &self.gradient);
+                let (excess, sign) = self.inequalities.excess(i, value);
+                let share = excess / self.inequalities.length(i).max(f64::MIN_POSITIVE);
+                if share > worst.0 {
+                    worst = (share, Some((i, sign)));
                 }
             }
-            if !(before > super::DEPENDENT * whole) {
+            let Some((row, sign)) = worst.1 else {
+                return self.gradient.iter().all(|x| x.is_finite());
+            };
+            if !self.add(row, sign) {
                 return false;
             }
-            level.projected[(i, i)] = before;
-            let column = self.basis.column_mut(self.fixed + i);
-            column.iter_mut().zip(&self.normal).for_each(|(q, x)| *q = x / before);
+            self.to_bound(self.working.len() - 1);
         }
-        true
     }
-}
 
-/// Solves `L z = along` in place; the entries before `first` are zero.
-fn solve_lower(level: &mut Level, first: usize) {
-    let (l, z) = (&level.projected, &mut level.along);
-    for i in first..z.len() {
-        let done: f64 = (first..i).map(|k| l[(i, k)] * z[k]).sum();
-        z[i] = (z[i] - done) / l[(i, i)];
+    /// Takes the point in `gradient` to the bound of the k-th working row, along its own direction in
+    /// the basis: the rows before stay.
+    fn to_bound(&mut self, k: usize) {
+        let Working { row, sign } = self.working[k];
+        let excess =
+            self.inequalities.value(row, &self.gradient) - self.inequalities.bound(row, sign);
+        let way = -sign * excess / self.triangle[(k, k)];
+        let column = self.basis.column(self.fixed + k);
+        self.gradient.iter_mut().zip(column).for_each(|(x, q)| *x += way * q);
     }
 }

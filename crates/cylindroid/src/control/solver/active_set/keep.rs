@@ -3,7 +3,7 @@
 //! Source   Escande, Mansard & Wieber 2014
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
 
-use super::{ActiveSet, DEPENDENT, Level, Objective, Precision, Use, project_out};
+use super::{ActiveSet, DEPENDENT, Level, Objective, Precision, Use};
 use crate::linalg::{dot, norm};
 
 impl ActiveSet {
@@ -84,7 +84,7 @@ impl ActiveSet {
             for (j, x) in self.normal.iter_mut().enumerate() {
                 *x = level.projected[(i, j)] / length;
             }
-            project_out(&self.basis, self.fixed, &mut self.normal);
+            self.basis.project_out(self.fixed, &mut self.normal);
             let length = norm(&self.normal);
             if length < 0.5 {
                 break; // rounding alone

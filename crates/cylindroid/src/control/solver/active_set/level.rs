@@ -3,7 +3,9 @@
 //! Shapes   A: m x n, b: m
 //! Checked  src/control/solver/hierarchy/tests.rs
 
-use crate::linalg::{Elimination, Matrix, RankGap, Svd, norm};
+use crate::linalg::{
+    Basis, Damped, DampedProblem, Elimination, LowerTriangle, Matrix, RankGap, Svd, norm,
+};
 
 /// The rows of a level, their targets and the memory to solve it.
 #[derive(Debug, Clone)]
@@ -21,13 +23,21 @@ pub(in crate::control) struct Level {
     /// Of the rows along a direction.
     pub(super) along: Vec<f64>,
     pub(super) gains: Vec<f64>,
+    /// Of its rows outside those of higher levels.
+    pub(super) lower: LowerTriangle,
     /// [A r] on the free motions, then [R Q^T r], and R^T: the solution without a decomposition.
     system: Matrix,
     left: Elimination,
     transposed: Matrix,
     right: Elimination,
     ordered: Vec<f64>,
+    damped: Damped,
+    clamped: Vec<bool>,
 }
+
+/// Damping below this share of the square of the rows leaves their products indefinite by rounding
+/// [-].
+const DEFINITE: f64 = 1e-10;
 
 /// Remainders of columns that are zero and that are not [-]: between them singular values decide.
 const CLEAR: RankGap = RankGap { zero: 1e-12, regular: 1e-4 };
@@ -43,11 +53,14 @@ impl Level {
             residual: vec![0.0; m],
             along: vec![0.0; m],
             gains: vec![0.0; m.min(n)],
+            lower: LowerTriangle::zeros(m),
             system: Matrix::zeros(m, n + 1),
             left: Elimination::workspace(n),
             transposed: Matrix::zeros(n, m.min(n)),
             right: Elimination::workspace(m.min(n)),
             ordered: vec![0.0; n],
+            damped: Damped::new(m, n),
+            clamped: vec![false; n],
         }
     }
 
@@ -78,7 +91,7 @@ impl Level {
     }
 
     /// `projected = A (1 - Q Q^T)` with the first columns of Q.
-    pub(super) fn project(&mut self, basis: &Matrix, columns: usize) {
+    pub(super) fn project(&mut self, basis: &Basis, columns: usize) {
         self.projected.as_mut_slice().copy_from_slice(self.rows.as_slice());
         for k in 0..columns {
             self.remove_direction(basis.column(k));
@@ -114,6 +127,37 @@ impl Level {
             x[j] = *value;
         }
         true
+    }
+
+    /// Adds the least motion that changes the first m rows, whose basis is loaded from `first` on, by
+    /// `along`, which becomes its coordinates.
+    pub(super) fn add_least_motion(
+        &mut self,
+        basis: &Basis,
+        first: usize,
+        m: usize,
+        x: &mut [f64],
+    ) {
+        self.lower.solve(&mut self.along[..m]);
+        for (k, z) in self.along[..m].iter().enumerate() {
+            x.iter_mut().zip(basis.column(first + k)).for_each(|(x, q)| *x += z * q);
+        }
+    }
+
+    /// The x that minimises |projected x - residual|^2 + damping |x|^2.
+    pub(super) fn damped_least_squares(&mut self, damping: f64, x: &mut [f64]) {
+        let Self { projected, residual, damped, clamped, svd, gains, .. } = self;
+        let problem = DampedProblem { a: projected.as_slice(), e: residual, clamped, damping };
+        if damping > DEFINITE * projected.frobenius_norm().powi(2)
+            && damped.solve_refined(problem, x)
+        {
+            return;
+        }
+        svd.decompose_warm(projected);
+        for (gain, s) in gains.iter_mut().zip(svd.values()) {
+            *gain = s / (s * s + damping);
+        }
+        svd.apply_gains_into(residual, gains, x);
     }
 
     /// `projected (1 - v v^T)`

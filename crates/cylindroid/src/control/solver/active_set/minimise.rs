@@ -4,9 +4,7 @@
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
 
-use super::{
-    ActiveSet, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, project_out, solve_triangle,
-};
+use super::{ActiveSet, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, solve_triangle};
 use crate::linalg::{dot, norm};
 
 impl ActiveSet {
@@ -49,14 +47,20 @@ impl ActiveSet {
                 for ((d, goal), y) in self.direction.iter_mut().zip(*desired).zip(&self.y) {
                     *d = goal - y;
                 }
-                project_out(&self.basis, columns, &mut self.direction);
-                project_out(&self.basis, columns, &mut self.direction);
+                self.basis.project_out(columns, &mut self.direction);
+                self.basis.project_out(columns, &mut self.direction);
             }
             Objective::Rows(level) => {
                 let scale = level.scale;
                 level.load_residual(&self.y);
                 self.direction.fill(0.0);
                 if columns == self.y.len() || scale == 0.0 {
+                    return;
+                }
+                let m = level.rows.rows();
+                if self.load_rows(level, columns, m, precision.rank) {
+                    level.along.copy_from_slice(&level.residual);
+                    level.add_least_motion(&self.basis, columns, m, &mut self.direction);
                     return;
                 }
                 level.project(&self.basis, columns);
@@ -67,25 +71,22 @@ impl ActiveSet {
                     }
                     level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
                 }
-                project_out(&self.basis, columns, &mut self.direction);
+                self.basis.project_out(columns, &mut self.direction);
             }
             Objective::Damped(level, damping) => {
-                // y = y_w + z, y_w in the span of the basis: z = V s / (s^2 + d) U^T (b - A y_w)
+                // y = y_w + z, y_w in the span of the basis: z = P^T (P P^T + d)^-1 (b - A y_w), P the rows
+                // on the free motions
                 self.normal.copy_from_slice(&self.y);
-                project_out(&self.basis, columns, &mut self.normal);
-                project_out(&self.basis, columns, &mut self.normal);
+                self.basis.project_out(columns, &mut self.normal);
+                self.basis.project_out(columns, &mut self.normal);
                 self.direction.fill(0.0);
                 if columns < self.y.len() {
                     level.load_residual(&self.y);
                     level.rows.mul_vec_into(&self.normal, &mut level.along);
                     level.residual.iter_mut().zip(&level.along).for_each(|(r, a)| *r += a);
                     level.project(&self.basis, columns);
-                    level.svd.decompose_warm(&level.projected);
-                    for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
-                        *gain = s / (s * s + *damping);
-                    }
-                    level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
-                    project_out(&self.basis, columns, &mut self.direction);
+                    level.damped_least_squares(*damping, &mut self.direction);
+                    self.basis.project_out(columns, &mut self.direction);
                 }
                 self.direction.iter_mut().zip(&self.normal).for_each(|(d, z)| *d -= z);
             }
