@@ -21,7 +21,7 @@ pub(crate) struct Basis {
     columns: AlignedColumns,
 }
 
-/// L, and the memory to bound its inverse.
+/// L, and the memory to bound its singular values.
 #[derive(Debug, Clone)]
 pub(crate) struct LowerTriangle {
     entries: AlignedColumns,
@@ -45,15 +45,16 @@ impl LowerTriangle {
         }
     }
 
-    /// |L^-1|_F squared, of the first m rows: 1 / |L^-1|_F is a lower bound of the singular values.
-    pub(crate) fn square_of_inverse(&mut self, m: usize) -> f64 {
+    /// True if all singular values of the first m rows and columns are above `least`, by upper bounds
+    /// of |L^-1|: |L^-1|_F, and the root of |L^-1 L^-T|_F, which one small value alone makes exact.
+    pub(crate) fn is_clear(&mut self, m: usize, least: f64) -> bool {
         #[cfg(target_arch = "x86_64")]
         if let Some(cpu) = Avx2::detect() {
             #[allow(unsafe_code)] // the one way to call a function compiled for more
             // SAFETY: the token proves that the processor has both features.
-            return unsafe { invert_avx2(cpu, &self.entries, &mut self.inverse, m) };
+            return unsafe { is_clear_avx2(cpu, self, m, least) };
         }
-        invert::<Array<4>>((), &self.entries, &mut self.inverse, m)
+        is_clear::<Array<4>>((), self, m, least)
     }
 }
 
@@ -223,32 +224,70 @@ fn project_out<R: Simd4>(_: R::Cpu, columns: &AlignedColumns, count: usize, x: &
         return;
     }
     let stride = columns.stride;
-    for column in columns.data[..count * stride].chunks_exact(stride) {
-        let mut sum = R::splat(0.0);
-        for (column, x) in column.as_chunks::<LANES>().0.iter().zip(x.chunks(LANES)) {
-            sum = R::load(column).mul_add(R::load_partial(x), sum);
+    // Four columns at a time: they are orthogonal to each other.
+    let mut blocks = columns.data[..count * stride].chunks_exact(LANES * stride);
+    for block in &mut blocks {
+        take_out::<R, LANES>(block, stride, x);
+    }
+    for column in blocks.remainder().chunks_exact(stride) {
+        take_out::<R, 1>(column, stride, x);
+    }
+}
+
+/// Takes the parts along K columns out of `x`.
+#[inline(always)]
+fn take_out<R: Simd4, const K: usize>(columns: &[f64], stride: usize, x: &mut [f64]) {
+    let mut sums = [R::splat(0.0); K];
+    for at in (0..stride).step_by(LANES) {
+        let x = R::load_partial(&x[at..]);
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum = R::load(&columns[k * stride + at..]).mul_add(x, *sum);
         }
-        let part = R::splat(-sum.sum());
-        for (column, x) in column.as_chunks::<LANES>().0.iter().zip(x.chunks_mut(LANES)) {
-            R::load(column).mul_add(part, R::load_partial(x)).store_partial(x);
+    }
+    let parts = sums.map(|sum| R::splat(-sum.sum()));
+    for at in (0..stride).step_by(LANES) {
+        let x = &mut x[at..];
+        let mut rest = R::load_partial(x);
+        for (k, part) in parts.iter().enumerate() {
+            rest = R::load(&columns[k * stride + at..]).mul_add(*part, rest);
         }
+        rest.store_partial(x);
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn invert_avx2(cpu: Avx2, lower: &AlignedColumns, inverse: &mut AlignedColumns, m: usize) -> f64 {
-    invert::<Lanes4>(cpu, lower, inverse, m)
+fn is_clear_avx2(cpu: Avx2, lower: &mut LowerTriangle, m: usize, least: f64) -> bool {
+    is_clear::<Lanes4>(cpu, lower, m, least)
+}
+
+#[inline(always)]
+fn is_clear<R: Simd4>(_: R::Cpu, lower: &mut LowerTriangle, m: usize, least: f64) -> bool {
+    let LowerTriangle { entries, inverse } = lower;
+    let square = invert::<R>(entries, inverse, m);
+    let share = least * least;
+    if square * share < 1.0 {
+        return true;
+    }
+    if !(square * share < m as f64) {
+        return false; // the largest value of the inverse has at least this part of all
+    }
+    let row = |i: usize| &inverse.data[i * inverse.stride..][..inverse.stride];
+    let mut fourth = 0.0;
+    for i in 0..m {
+        for j in 0..=i {
+            let end = (j + 1).next_multiple_of(LANES);
+            let product = lanes::<R>(&row(i)[..end], &row(j)[..end]).sum();
+            fourth += if j < i { 2.0 } else { 1.0 } * product * product;
+        }
+    }
+    fourth * share * share < 1.0
 }
 
 /// Rows of the inverse, one after another: of row i the rows before, each times its entry of L.
+/// Returns |L^-1|_F squared.
 #[inline(always)]
-fn invert<R: Simd4>(
-    _: R::Cpu,
-    lower: &AlignedColumns,
-    inverse: &mut AlignedColumns,
-    m: usize,
-) -> f64 {
+fn invert<R: Simd4>(lower: &AlignedColumns, inverse: &mut AlignedColumns, m: usize) -> f64 {
     let stride = inverse.stride;
     let mut square = R::splat(0.0);
     for i in 0..m {
@@ -277,8 +316,8 @@ mod tests {
     use super::super::{Matrix, Svd};
     use super::*;
 
-    /// Random rows after random columns: the rows come back, the basis is orthonormal, and the
-    /// inverse is that of the singular values.
+    /// Random rows after random columns: the rows come back, the basis is orthonormal, and
+    /// clear are those whose singular values are.
     #[test]
     fn rows_come_back_from_the_basis() {
         let mut random = Random(7);
@@ -316,9 +355,14 @@ mod tests {
             let mut solution = x.clone();
             lower.solve(&mut solution);
             assert_close("solution", &l.mul_vec(&solution), &x, 1e-9);
-            let expected: f64 = Svd::of(&l).values().map(|s| 1.0 / (s * s)).sum();
-            let got = lower.square_of_inverse(m);
-            assert!((got - expected).abs() < 1e-9 * expected, "{got} {expected}");
+            let svd = Svd::of(&l);
+            let least = svd.values().fold(f64::INFINITY, f64::min);
+            let square = svd.values().map(|s| s.powi(-2)).sum::<f64>();
+            let fourth = svd.values().map(|s| s.powi(-4)).sum::<f64>();
+            assert!(lower.is_clear(m, 0.999_999 * square.powf(-0.5)));
+            assert!(lower.is_clear(m, 0.999_999 * fourth.powf(-0.25)));
+            assert!(!lower.is_clear(m, 1.000_001 * fourth.powf(-0.25)));
+            assert!(!lower.is_clear(m, 1.000_001 * least), "{n} {k} {m}");
         }
     }
 

@@ -120,6 +120,7 @@ impl ScaledLevel {
 
 impl ActiveSet {
     /// The least-squares solution of a level within what the levels before leave.
+    #[cfg(test)]
     pub(in crate::control) fn solve(&mut self, level: &mut Level, precision: Precision) {
         level.scale = level.rows.frobenius_norm();
         self.minimise(Objective::Rows(level), precision);

@@ -22,7 +22,7 @@ use curved::Curved;
 pub(in crate::control) use curved::{Curvature, Path};
 pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem, STRAIGHT};
 
-use super::active_set::{ActiveSet, Level};
+use super::active_set::{ActiveSet, Level, Objective};
 use super::bounds::{LimitKind, VelocityBounds};
 use super::inequalities::Inequalities;
 use crate::inverse::Method;
@@ -310,15 +310,15 @@ impl Saturator {
     /// set stands at its start.
     fn change_direction(&mut self, p: &Problem<'_>, last: &[f64]) {
         let Self { set, task, .. } = self;
-        set.solve(task, STRAIGHT);
-        let left = (task.residual(set.point()) / p.gain).min(norm(p.error));
+        let left = set.least_residual(task, STRAIGHT);
+        let left = (left / p.gain).min(norm(p.error));
         let damping = (CURVATURE * left).max(LEAST_DAMPING);
         #[cfg(test)]
         {
             self.damping = damping;
         }
         set.start(last);
-        set.solve_damped(task, damping, STRAIGHT, |_| ());
+        set.minimise(Objective::Damped(task, damping), STRAIGHT);
     }
 }
 

@@ -3,8 +3,7 @@
 //! Formula  A = C Q_0^T + L Q^T, Q_0 the basis of higher levels, L lower triangular (`Basis`);
 //!          y + Q L^-1 (b - A y) performs the level, and Q continues the basis; working rows stay at
 //!          their bounds and rows that are left are taken to theirs, one by one, by motions outside Q
-//! Valid    rows whose least singular value outside Q_0 is above a bound, for which 1 / |L^-1|_F is a
-//!          lower bound; a solution within all inequalities. Otherwise nothing changes
+//! Valid    rows whose least singular value outside Q_0 is above a bound (`LowerTriangle::is_clear`); a solution within all inequalities. Otherwise nothing changes
 //! Why so   any point within all inequalities that performs the level is optimal for it, whichever
 //!          rows are at their bounds: lower levels release those that need not be
 //! Cost     of the order of m (k + m) n for m rows after k
@@ -77,7 +76,7 @@ impl ActiveSet {
         }
         let least = eps.max(CLEAR) * level.scale;
         self.basis.orthonormalise(first, m, DEPENDENT, &mut level.lower)
-            && level.lower.square_of_inverse(m) * least * least < 1.0
+            && level.lower.is_clear(m, least)
     }
 
     /// Moves to a point within all inequalities that performs the rows, whose basis is loaded, and

@@ -3,6 +3,8 @@
 //! Shapes   A: m x n, b: m
 //! Checked  src/control/solver/hierarchy/tests.rs
 
+use std::ops::Range;
+
 use crate::linalg::{
     Basis, Damped, DampedProblem, Elimination, LowerTriangle, Matrix, RankGap, Svd, norm,
 };
@@ -92,8 +94,15 @@ impl Level {
 
     /// `projected = A (1 - Q Q^T)` with the first columns of Q.
     pub(super) fn project(&mut self, basis: &Basis, columns: usize) {
-        self.projected.as_mut_slice().copy_from_slice(self.rows.as_slice());
-        for k in 0..columns {
+        self.project_on(basis, 0..columns);
+    }
+
+    /// The same where the columns before these have been projected out, if any.
+    pub(super) fn project_on(&mut self, basis: &Basis, columns: Range<usize>) {
+        if columns.start == 0 {
+            self.projected.as_mut_slice().copy_from_slice(self.rows.as_slice());
+        }
+        for k in columns {
             self.remove_direction(basis.column(k));
         }
     }
@@ -101,17 +110,25 @@ impl Level {
     /// The least x that minimises |projected x - residual| where the rank is clear; false elsewhere.
     pub(super) fn least_squares(&mut self, x: &mut [f64]) -> bool {
         let (m, n) = (self.rows.rows(), self.rows.cols());
-        let Self { system, left, transposed, right, ordered, .. } = self;
+        let Self { system, left, transposed, right, ordered, projected, .. } = self;
         let (entries, last) = system.as_mut_slice().split_at_mut(m * n);
-        entries.copy_from_slice(self.projected.as_slice());
+        entries.copy_from_slice(projected.as_slice());
         last.copy_from_slice(&self.residual);
         let gap = CLEAR.times(self.scale);
         if !left.eliminate(system, n, gap) {
             return false;
         }
         let rank = left.rank();
+        x.fill(0.0);
         if rank == 0 {
-            x.fill(0.0);
+            return true;
+        }
+        let moves = |j: &usize| projected.column(*j).iter().any(|a| *a != 0.0);
+        if rank == (0..n).filter(moves).count() {
+            // Of independent columns, where working rows are those of single unknowns.
+            ordered[..rank].copy_from_slice(&system.column(n)[..rank]);
+            left.solve(system, &mut ordered[..rank]);
+            ordered[..rank].iter().zip(left.order()).for_each(|(value, &j)| x[j] = *value);
             return true;
         }
         for i in 0..rank {

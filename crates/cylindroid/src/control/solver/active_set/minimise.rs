@@ -16,12 +16,14 @@ impl ActiveSet {
     ) {
         let most = ROUNDS * (self.y.len() + self.inequalities.len()) + 10;
         let mut standing = 0;
+        // Columns of the basis that are projected out of the rows.
+        let mut projected = 0;
         for _ in 0..most {
             #[cfg(test)]
             {
                 self.rounds += 1;
             }
-            self.load_direction(&mut objective, precision);
+            self.load_direction(&mut objective, precision, &mut projected);
             let blocked = self.advance();
             let Some((share, row, sign)) = blocked else {
                 let least = self.load_gradient(&mut objective, precision);
@@ -30,6 +32,7 @@ impl ActiveSet {
                 if !self.release(least, cautious) {
                     break;
                 }
+                projected = 0;
                 continue;
             };
             standing = if share > 0.0 { 0 } else { standing + 1 };
@@ -40,7 +43,12 @@ impl ActiveSet {
     }
 
     /// The step to the minimum on the free motions.
-    pub(super) fn load_direction(&mut self, objective: &mut Objective<'_>, precision: Precision) {
+    fn load_direction(
+        &mut self,
+        objective: &mut Objective<'_>,
+        precision: Precision,
+        projected: &mut usize,
+    ) {
         let columns = self.fixed + self.working.len();
         match objective {
             Objective::Nearest(desired) => {
@@ -63,7 +71,8 @@ impl ActiveSet {
                     level.add_least_motion(&self.basis, columns, m, &mut self.direction);
                     return;
                 }
-                level.project(&self.basis, columns);
+                level.project_on(&self.basis, *projected..columns);
+                *projected = columns;
                 if !level.least_squares(&mut self.direction) {
                     level.svd.decompose_warm(&level.projected);
                     for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
@@ -84,7 +93,8 @@ impl ActiveSet {
                     level.load_residual(&self.y);
                     level.rows.mul_vec_into(&self.normal, &mut level.along);
                     level.residual.iter_mut().zip(&level.along).for_each(|(r, a)| *r += a);
-                    level.project(&self.basis, columns);
+                    level.project_on(&self.basis, *projected..columns);
+                    *projected = columns;
                     level.damped_least_squares(*damping, &mut self.direction);
                     self.basis.project_out(columns, &mut self.direction);
                 }

@@ -77,7 +77,7 @@ impl Curved {
         curvature: &mut dyn Curvature,
     ) {
         let (m, n) = (p.j.rows(), p.j.cols());
-        set.solve(task, STRAIGHT);
+        set.least_residual(task, STRAIGHT);
         self.left.copy_from_slice(task.left(set.point()));
         let (size, error) = (norm(&self.left), norm(p.error));
         let scale = if size > 0.0 { (1.0 / p.gain).min(error / size) } else { 0.0 };
@@ -127,6 +127,6 @@ impl Curved {
             *b = share * x;
         }
         set.start(p.last);
-        set.solve(&mut self.level, STRAIGHT);
+        set.least_residual(&mut self.level, STRAIGHT);
     }
 }
