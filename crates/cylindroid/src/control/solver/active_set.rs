@@ -8,8 +8,9 @@
 //! Shapes   A: m x n, G: r x n
 //! Valid    any rank of A, F and G, infinite and equal bounds. `start` finds the point of the
 //!          polyhedron nearest to a guess, or says that there is none
-//! Cost     at most `ROUNDS` (n + r) rounds of one m x n decomposition; one to three in a control
-//!          loop, where the rows of the last step come first. No allocation
+//! Cost     at most `ROUNDS` (n + r) rounds of one m x n orthogonalisation, of a decomposition where
+//!          ranks are not clear; one to three in a control loop, where the rows of the last step come
+//!          first. No allocation
 //! Why so   inequalities stand above all levels, so that each level starts from a feasible point:
 //!          a limit is never traded against a task, and stopping early is safe
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5; Goldfarb & Idnani 1983 (start);

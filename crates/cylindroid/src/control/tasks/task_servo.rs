@@ -9,9 +9,9 @@
 //! Shapes   n joint velocities, the sum of the tasks' rows
 //! Units    rows of lengths are divided by the characteristic length
 //! Valid    trees and closed chains: arms, hands, several arms, mobile and floating bases, objects
-//! Cost     a level of m rows decomposes m x n once for each round of its active set, and again for
-//!          each level whose direction changes. No allocation, in closed chains away from type II
-//!          singularities
+//! Cost     a level of m rows that can be performed orthogonalises m x n once, any other once for each
+//!          round of its active set, and again for each level whose direction changes. No
+//!          allocation, in closed chains away from type II singularities
 //! Fails    on non-finite input. Where limits and distances contradict one another, distances give way as
 //!          little as possible; where limits do (closed chains), all joints brake
 //! Source   Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987 (velocity dampers)

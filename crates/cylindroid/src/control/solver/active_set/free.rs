@@ -92,11 +92,11 @@ impl ActiveSet {
             self.inequalities.write(row, sign, &mut self.normal);
             self.multipliers[k] = 0.0;
             self.append(self.fixed + k, Some(k)) && {
-                self.to_bound(k);
+                self.advance_to_bound(k);
                 true
             }
         });
-        if !(is_held && self.take_to_bounds()) {
+        if !(is_held && self.add_bounds()) {
             self.fixed -= m;
             return false;
         }
@@ -114,7 +114,7 @@ impl ActiveSet {
 
     /// Adds the rows that the point in `gradient` leaves, the worst first, and takes it to their
     /// bounds; false if one of them depends on the others.
-    fn take_to_bounds(&mut self) -> bool {
+    fn add_bounds(&mut self) -> bool {
         loop {
             let mut worst = (0.0, None);
             for i in 0..self.inequalities.len() {
@@ -134,13 +134,13 @@ impl ActiveSet {
             if !self.add(row, sign) {
                 return false;
             }
-            self.to_bound(self.working.len() - 1);
+            self.advance_to_bound(self.working.len() - 1);
         }
     }
 
     /// Takes the point in `gradient` to the bound of the k-th working row, along its own direction in
     /// the basis: the rows before stay.
-    fn to_bound(&mut self, k: usize) {
+    fn advance_to_bound(&mut self, k: usize) {
         let Working { row, sign } = self.working[k];
         let excess =
             self.inequalities.value(row, &self.gradient) - self.inequalities.bound(row, sign);
