@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 
 use crate::python::{environment, pip};
-use crate::shell::{cargo, documentation, root, run};
+use crate::shell::{cargo, copy_folder, documentation, root, run};
 use crate::{models, python};
 
 const HERE: &str = "xtask/book";
@@ -33,7 +33,7 @@ const CONFIGURATION: [&str; 2] = ["--config-file", "xtask/book/mkdocs.yml"];
 pub(crate) fn build() -> Result<()> {
     run(mkdocs()?.args(["build", "--strict", "--quiet"]).args(CONFIGURATION))?;
     documentation()?;
-    copy(&root().join("target/doc"), &root().join(SITE).join("rust"))?;
+    copy_folder(&root().join("target/doc"), &root().join(SITE).join("rust"))?;
     run(Command::new(interpreter()?).args([&format!("{HERE}/check.py"), SITE]))
 }
 
@@ -93,19 +93,5 @@ fn once(folder: &Path, files: &[&str], install: impl FnOnce() -> Result<()>) -> 
     }
     install()?;
     fs::write(stamp, wanted)?;
-    Ok(())
-}
-
-fn copy(from: &Path, to: &Path) -> Result<()> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let entry = entry?;
-        let target = to.join(entry.file_name());
-        if entry.file_type()?.is_dir() {
-            copy(&entry.path(), &target)?;
-        } else {
-            fs::copy(entry.path(), target)?;
-        }
-    }
     Ok(())
 }

@@ -15,6 +15,7 @@ mod mutants;
 mod parquet;
 mod python;
 mod python_names;
+mod release;
 mod shell;
 mod steps;
 mod viewer;
@@ -85,6 +86,8 @@ cargo xtask <task>
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
   man DIR   writes the manual pages of the command line
+  release   packages the crates, with the page of the viewer, and prints what would be uploaded
+            with sizes (needs Node.js and crates.io; uploads nothing)
   figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {
@@ -134,6 +137,7 @@ fn run() -> Result<()> {
             instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
         }
         Some("man") => steps::man(std::env::args().nth(2).as_deref()),
+        Some("release") => release::check(),
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

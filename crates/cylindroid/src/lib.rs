@@ -92,6 +92,7 @@ mod book {
     }
     pages! {
         Readme "../../../README.md"
+        OfCrate "../README.md"
         ConceptsFrames "../../../docs/concepts/frames.md"
         ConceptsRanks "../../../docs/concepts/ranks.md"
         GuideAssembly "../../../docs/guide/assembly.md"

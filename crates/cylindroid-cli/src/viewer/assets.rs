@@ -11,11 +11,8 @@ use cylindroid::Mechanism;
 use cylindroid::model::Geometry;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
-/// The page built by `cargo xtask viewer`.
-#[derive(rust_embed::RustEmbed)]
-#[folder = "../../viewer/dist"]
-#[allow_missing = true]
-pub(super) struct Page;
+// `Page`, whose folder build.rs knows.
+include!(concat!(env!("OUT_DIR"), "/page.rs"));
 
 /// True if the page is in the binary.
 pub(crate) fn page_is_built() -> bool {
