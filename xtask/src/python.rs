@@ -6,8 +6,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::models;
 use crate::shell::{root, run};
+use crate::{models, viewer};
 
 const REQUIREMENTS: &str = "crates/cylindroid-py/requirements-test.txt";
 const TESTS: &str = "crates/cylindroid-py/tests";
@@ -67,8 +67,10 @@ pub(crate) fn for_tests() -> Result<PathBuf> {
     with_requirements(&root().join("target/python-venv"))
 }
 
-/// A Python that has the package and what its tests need, and the wheel.
+/// A Python that has the package and what its tests need, and the wheel, which carries the page of
+/// the viewer.
 fn installed() -> Result<(PathBuf, PathBuf)> {
+    viewer::build()?;
     let python = for_tests()?;
     let wheel = wheel(&python)?;
     pip(&python, &["--force-reinstall", "--no-deps", &wheel.to_string_lossy()])?;
@@ -107,14 +109,15 @@ pub(crate) fn fuzz(seconds: f64, seed: u64) -> Result<()> {
         .env("CYLINDROID_FUZZ_SEED", seed.to_string()))
 }
 
-/// Builds, installs and tests the package: pytest, the stubs, the tutorials' examples; then the
-/// wheel in an environment that has nothing but numpy.
+/// Builds, installs and tests the package: pytest, the stubs, the tutorials' examples, pages that
+/// follow a program; then the wheel in an environment that has nothing but numpy.
 pub(crate) fn test() -> Result<()> {
     let (python, wheel) = installed()?;
     let robots = models::fetch()?;
     let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider", TESTS];
     run(Command::new(&python).args(pytest).env("CYLINDROID_TEST_ROBOTS", robots))?;
     run(Command::new(&python).args(["-m", "mypy.stubtest", "--concise", "cylindroid"]))?;
+    viewer::follow(&python)?;
 
     let bare = root().join("target/python-bare-venv");
     if bare.exists() {

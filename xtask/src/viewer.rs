@@ -27,7 +27,7 @@ pub(crate) fn task(option: Option<&str>) -> Result<()> {
         }
         Some("--picture") => {
             build()?;
-            in_browser(&["tests/picture.mjs".into()])
+            in_browser(&["tests/picture.mjs".into()], None)
         }
         Some(other) => bail!("no option '{other}': cargo xtask viewer [--test | --picture]"),
     }
@@ -104,11 +104,16 @@ pub(crate) fn test() -> Result<()> {
     files.retain(|file| file.to_string_lossy().ends_with(".test.mjs"));
     files.sort();
     arguments.extend(files);
-    in_browser(&arguments)
+    in_browser(&arguments, None)
 }
 
-/// Runs Node.js on the page's tests, with a browser and the command line.
-fn in_browser(arguments: &[PathBuf]) -> Result<()> {
+/// Pages that follow a program in this Python, which has the package.
+pub(crate) fn follow(python: &Path) -> Result<()> {
+    in_browser(&["--test".into(), "tests/python.mjs".into()], Some(python))
+}
+
+/// Runs Node.js on the page's tests, with a browser, the command line and perhaps a Python.
+fn in_browser(arguments: &[PathBuf], python: Option<&Path>) -> Result<()> {
     let chromium = chromium()?;
     let robots = models::fetch()?;
     run(&mut cargo(&["build", "--quiet", "--package", "cylindroid-cli"]))?;
@@ -123,6 +128,9 @@ fn in_browser(arguments: &[PathBuf]) -> Result<()> {
         .env("CYLINDROID_TEST_ROBOTS", robots)
         .env("CYLINDROID_SCREENSHOTS", screenshots)
         .env("CYLINDROID_CHROMIUM", chromium);
+    if let Some(python) = python {
+        node.env("CYLINDROID_PYTHON", python);
+    }
     let status = node.current_dir(root().join(PAGE)).status().context(NO_NODE)?;
     if !status.success() {
         bail!("the viewer's page failed in the browser ({status})");

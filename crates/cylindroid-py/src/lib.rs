@@ -28,6 +28,7 @@ mod sweep;
 mod table;
 mod tasks;
 mod threads;
+mod view;
 mod workspace_map;
 
 use pyo3::prelude::*;
@@ -112,6 +113,10 @@ mod _core {
         PyHalfSpace, PyJointVelocitiesTask, PyLimitAvoidanceTask, PyManipulabilityTask,
         PyMotionTask, PyPostureTask, PyRelativeFrameTask, PyTaskReport, PyTaskServo,
     };
+    #[pymodule_export]
+    use crate::view::PyView;
+    #[pymodule_export]
+    use crate::view::start::{has_page, start_view};
     #[pymodule_export]
     use crate::workspace_map::{PyWorkspaceMap, workspace_map};
 

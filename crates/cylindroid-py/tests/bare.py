@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import sys
+import urllib.request
 
 import numpy as np
 
@@ -14,4 +15,7 @@ assert "matplotlib" not in sys.modules
 
 robot = cy.load("panda")
 assert robot.fk(robot.home).shape == (4, 4)
+# The wheel carries the page of the viewer.
+with cy.show(robot, open=False) as view:
+    assert b"app" in urllib.request.urlopen(view.url).read()
 assert cy.pinv(robot.jacobian(np.tile(robot.home, (3, 1)))).matrix.shape == (3, 7, 6)

@@ -1,6 +1,7 @@
 """Every public call of the package with arguments that it accepts; tests change one at a time."""
 
 import inspect
+import os
 
 import numpy as np
 
@@ -68,6 +69,33 @@ ARM = J[:, :3]
 TWIST = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
 LINES = [[0, 0, 0, 0, 0, 1], [0, -1, 0, 1, 0, 0]]
 FINGERS = [cy.FingerContact([x, 0, 0], [-x, 0, 0], mu=0.5, torsion=0.01) for x in (1.0, -1.0)]
+
+
+VIEW, CLOSED = cy.show(PANDA, open=False), cy.show(PANDA, open=False)
+VIEW.add_obstacle("ball", "sphere", [0.5, 0, 0.5], radius=0.1)
+CLOSED.close()
+
+
+#: No page opens.
+os.environ["BROWSER"] = "true"
+
+
+def shown(**arguments):
+    cy.show(**arguments).close()
+
+
+def obstructed(**arguments):
+    VIEW.add_obstacle(**arguments)
+    VIEW.remove(arguments["name"])
+
+
+def removed(**arguments):
+    VIEW.add_points("dot", [[0.0, 0, 0]])
+    VIEW.remove(**arguments)
+
+
+def seen(*_):
+    pass
 
 
 def total(q, names):
@@ -354,6 +382,23 @@ def calls():
          {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
           "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,
           "loci": False}),
+        ("show", shown,
+         {"mechanism": PANDA, "q": PANDA.home, "frame": "flange", "tool": np.eye(4),
+          "open": False, "height": 600, "host": "127.0.0.1", "port": 0, "meshes": (),
+          "frame_ancestors": "http://localhost:8888"}),
+        ("View.add_frame", VIEW.add_frame, {"name": "f", "pose": POSE, "size": 0.1}),
+        *[(f"View.{name}", getattr(VIEW, name),
+           {"name": name, "points": [[0.0, 0, 0], [0, 0, 1.0]], "rgba": [1.0, 0, 0, 1]})
+          for name in ("add_line", "add_points")],
+        ("View.add_obstacle", obstructed,
+         {"name": "egg", "shape": "ellipsoid", "pose": POSE, "radius": None, "length": None,
+          "size": [0.1, 0.1, 0.2], "file": None}),
+        ("View.move_obstacle", VIEW.move_obstacle, {"name": "ball", "pose": POSE}),
+        ("View.remove", removed, {"name": "dot"}),
+        ("View.open", VIEW.open, {"height": 600}),
+        *[(f"View.{name}", getattr(VIEW, name), {"function": seen})
+          for name in ("on_target", "on_configuration", "on_obstacle")],
+        ("View.wait", CLOSED.wait, {"timeout": 0.0}),
         ("Srdf", cy.Srdf, {"path": "panda.srdf", "text": SRDF}),
         ("Srdf.joints", GROUPS.joints, {"group": "forearm", "robot": PANDA}),
         ("Srdf.group", GROUPS.group, {"name": "forearm", "robot": PANDA, "q": PANDA.home}),

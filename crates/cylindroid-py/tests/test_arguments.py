@@ -44,6 +44,8 @@ OTHER_WORDS = {
     "radius": "a length",
     "moment": "admittance",
     "q": "start of the joint move",
+    "name": "obstacle",
+    "via": "point",
 }
 
 

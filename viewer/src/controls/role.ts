@@ -11,7 +11,7 @@ export class Role {
 
   constructor(before: HTMLElement, private readonly session: Session) {
     this.button = h("button", { class: "button", type: "button", "data-role": "drive", onclick: () => this.drive() }, "Take over");
-    this.element = h("span", { class: "group", hidden: true }, this.words, this.button);
+    this.element = h("span", { class: "shared", hidden: true }, this.words, this.button);
     before.before(this.element);
     session.on("about", (about) => this.show(about));
   }

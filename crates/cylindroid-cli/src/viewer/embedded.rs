@@ -1,7 +1,7 @@
 //! The viewer inside another program, which holds a session of its own.
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use cylindroid::model::Geometry;
@@ -18,6 +18,8 @@ use crate::obstacle::ObstacleArg;
 
 /// Threads of the server.
 const THREADS: usize = 2;
+/// Longest wait for a report that is not finished when the viewer is closed, which is discarded.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// What a [`Viewer`] shows, and where it listens.
 #[derive(Debug)]
@@ -51,7 +53,8 @@ pub struct ShowOptions {
 pub struct Viewer {
     shared: Arc<SharedSession>,
     url: String,
-    runtime: Option<Runtime>,
+    /// `None` once it is closed.
+    runtime: Mutex<Option<Runtime>>,
 }
 
 impl Viewer {
@@ -90,7 +93,7 @@ impl Viewer {
         })?;
         let url = server.url();
         runtime.spawn(server.serve_on());
-        Ok(Self { shared, url, runtime: Some(runtime) })
+        Ok(Self { shared, url, runtime: Mutex::new(Some(runtime)) })
     }
 
     /// True if the page is a part of this library; otherwise only the protocol is served.
@@ -225,8 +228,8 @@ impl Viewer {
         self.shared.next_drags(patience)
     }
 
-    /// Wakes those who wait in `next_drags`, which no longer wait; the server stops when the value is
-    /// dropped.
+    /// Stops the server, and wakes who waits in `next_drags`. Not to be called in an asynchronous
+    /// task.
     pub fn close(&self) {
         let closed = |inner: &mut Inner| {
             if let Some(program) = &mut inner.program {
@@ -236,16 +239,16 @@ impl Viewer {
         };
         // It cannot fail.
         let _ = self.shared.change(closed);
+        let runtime = self.runtime.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(runtime) = runtime {
+            runtime.shutdown_timeout(PATIENCE);
+        }
     }
 }
 
 impl Drop for Viewer {
     fn drop(&mut self) {
         self.close();
-        if let Some(runtime) = self.runtime.take() {
-            // Unfinished reports are discarded.
-            runtime.shutdown_background();
-        }
     }
 }
 

@@ -100,6 +100,7 @@ from ._core import (
     TransmittedWrench,
     Transversals,
     TruncatedDirection,
+    View,
     WaypointMove,
     WorkspaceMap,
     __version__,
@@ -158,6 +159,7 @@ from ._errors import (
     UnknownNameError,
     UnreadableFileError,
 )
+from ._show import show
 from ._sweeps import SweepColumn, sweep
 
 __all__ = [
@@ -261,6 +263,7 @@ __all__ = [
     "TruncatedDirection",
     "UnknownNameError",
     "UnreadableFileError",
+    "View",
     "WaypointMove",
     "WorkspaceMap",
     "__version__",
@@ -301,6 +304,7 @@ __all__ = [
     "screw_to",
     "secondary_tasks",
     "selectively_damped",
+    "show",
     "sweep",
     "transversals",
     "velocity_conversion",

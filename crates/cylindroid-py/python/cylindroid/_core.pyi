@@ -3,13 +3,14 @@
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, final, overload
+from typing import Any, TypeVar, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import disjoint_base
 
 _Array = NDArray[np.float64]
+_Function = TypeVar("_Function", bound=Callable[..., Any])
 
 __all__ = [
     "ActuatorTransmission",
@@ -99,6 +100,7 @@ __all__ = [
     "TransmittedWrench",
     "Transversals",
     "TruncatedDirection",
+    "View",
     "WaypointMove",
     "WorkspaceMap",
     "__version__",
@@ -115,6 +117,7 @@ __all__ = [
     "gram_determinant",
     "grasp_mobility",
     "grasp_quality",
+    "has_page",
     "hyperbolic",
     "hyperbolic_svd",
     "inverse",
@@ -139,6 +142,7 @@ __all__ = [
     "screw_to",
     "secondary_tasks",
     "selectively_damped",
+    "start_view",
     "transversals",
     "velocity_conversion",
     "workspace_map",
@@ -2056,6 +2060,55 @@ class OptimalDesigns:
     def reason(self) -> str | None: ...
 
 @final
+class View:
+    @property
+    def q(self) -> _Array: ...
+    @q.setter
+    def q(self, q: Any) -> None: ...
+    @property
+    def target(self) -> _Array: ...
+    @target.setter
+    def target(self, target: ArrayLike) -> None: ...
+    @property
+    def playing(self) -> bool: ...
+    @playing.setter
+    def playing(self, playing: bool) -> None: ...
+    @property
+    def url(self) -> str: ...
+    @property
+    def pages(self) -> int: ...
+    @property
+    def closed(self) -> bool: ...
+    def add_frame(self, name: str, pose: ArrayLike, size: float | None = None) -> None: ...
+    def add_line(
+        self, name: str, points: ArrayLike, rgba: ArrayLike | None = None
+    ) -> None: ...
+    def add_points(
+        self, name: str, points: ArrayLike, rgba: ArrayLike | None = None
+    ) -> None: ...
+    def add_obstacle(
+        self,
+        name: str,
+        shape: str,
+        pose: ArrayLike | None = None,
+        *,
+        radius: float | None = None,
+        length: float | None = None,
+        size: ArrayLike | None = None,
+        file: str | os.PathLike[str] | None = None,
+    ) -> None: ...
+    def move_obstacle(self, name: str, pose: ArrayLike) -> None: ...
+    def remove(self, name: str) -> None: ...
+    def on_target(self, function: _Function) -> _Function: ...
+    def on_configuration(self, function: _Function) -> _Function: ...
+    def on_obstacle(self, function: _Function) -> _Function: ...
+    def open(self, height: int = 600) -> None: ...
+    def wait(self, timeout: float = ...) -> bool: ...
+    def close(self) -> None: ...
+    def __enter__(self) -> View: ...
+    def __exit__(self, *_exception: object) -> None: ...
+
+@final
 class WorkspaceMap:
     @property
     def axes(self) -> dict[str, tuple[float, float, int]]: ...
@@ -2093,6 +2146,7 @@ def grasp_quality(
     planar: bool = False,
     metric: str = "l1",
 ) -> GraspQuality: ...
+def has_page() -> bool: ...
 def hyperbolic(
     J: ArrayLike,
     h: float,
@@ -2187,6 +2241,17 @@ def secondary_tasks() -> list[dict[str, Any]]: ...
 def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...
+def start_view(
+    mechanism: Mechanism,
+    q: ArrayLike | None,
+    frame: str | None,
+    tool: ArrayLike | None,
+    meshes: Sequence[str | os.PathLike[str]],
+    host: str,
+    port: int,
+    token: str,
+    frame_ancestors: str | None,
+) -> View: ...
 def transversals(
     lines: ArrayLike,
     length: float | None = None,

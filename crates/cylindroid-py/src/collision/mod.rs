@@ -1,7 +1,7 @@
 //! The classes `CollisionModel` and `Distances`.
 
 mod distances;
-mod shape;
+pub(crate) mod shape;
 
 use std::path::PathBuf;
 
@@ -99,7 +99,7 @@ fn model(
 }
 
 /// A pose from a matrix of 4 x 4, or a position.
-fn placed(pose: Option<Numbers<'_>>) -> Result<Pose> {
+pub(crate) fn placed(pose: Option<Numbers<'_>>) -> Result<Pose> {
     let Some(numbers) = pose else { return Ok(Pose::IDENTITY) };
     if *numbers.shape() == [3] {
         let position = numbers.entries::<3>("pose")?;

@@ -12,16 +12,16 @@ const SHAPES: [&str; 8] =
     ["sphere", "capsule", "cylinder", "box", "ellipsoid", "half_space", "convex_hull", "mesh"];
 
 /// The sizes that are given.
-pub(super) struct Sizes<'py> {
-    pub(super) radius: Option<f64>,
-    pub(super) length: Option<f64>,
-    pub(super) size: Option<Numbers<'py>>,
-    pub(super) points: Option<Numbers<'py>>,
-    pub(super) file: Option<PathBuf>,
+pub(crate) struct Sizes<'py> {
+    pub(crate) radius: Option<f64>,
+    pub(crate) length: Option<f64>,
+    pub(crate) size: Option<Numbers<'py>>,
+    pub(crate) points: Option<Numbers<'py>>,
+    pub(crate) file: Option<PathBuf>,
 }
 
 /// The shape of this name; every size that it needs is given and no other.
-pub(super) fn geometry(shape: &str, sizes: Sizes<'_>) -> Result<Geometry> {
+pub(crate) fn geometry(shape: &str, sizes: Sizes<'_>) -> Result<Geometry> {
     let Sizes { radius, length, size, points, file } = sizes;
     let given = [
         ("radius", radius.is_some()),
