@@ -49,6 +49,17 @@ impl Elimination {
     /// Eliminates the first `columns` columns of `a`, the largest remainder first; false where a
     /// remainder lies in the gap.
     pub(crate) fn eliminate(&mut self, a: &mut Matrix, columns: usize, gap: RankGap) -> bool {
+        self.eliminate_beside(a, columns, a.cols() - columns, gap)
+    }
+
+    /// The same for an A_2 of the next `beside` columns: those after them stay as they are.
+    pub(crate) fn eliminate_beside(
+        &mut self,
+        a: &mut Matrix,
+        columns: usize,
+        beside: usize,
+        gap: RankGap,
+    ) -> bool {
         (self.rank, self.columns) = (0, columns);
         for j in 0..columns {
             (self.order[j], self.sizes[j]) = (j, square(a.column(j)));
@@ -67,7 +78,7 @@ impl Elimination {
             a.swap_columns(j, largest);
             self.sizes.swap(j, largest);
             self.order.swap(j, largest);
-            self.factors[j] = reflect_rest(a, j, size.sqrt(), |l, rest| {
+            self.factors[j] = reflect_rest(a, columns + beside, j, size.sqrt(), |l, rest| {
                 if l < columns {
                     self.sizes[l] = square(rest);
                 }

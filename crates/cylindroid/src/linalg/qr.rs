@@ -90,7 +90,7 @@ impl Qr {
             if norm == 0.0 {
                 continue;
             }
-            factors[j] = reflect_rest(&mut a, j, norm, |l, rest| {
+            factors[j] = reflect_rest(&mut a, n, j, norm, |l, rest| {
                 if pivot {
                     sizes[l] = square(rest);
                 }
@@ -209,11 +209,12 @@ impl Qr {
 }
 
 /// Reflects column `j` of `a`, `norm` its length from row `j` on, to a multiple of e_j, and the
-/// columns after it; `f` gets each of these with its remainder below row `j`. Returns the factor of
+/// columns after it, of the first `columns`; `f` gets each of these with its remainder below row `j`. Returns the factor of
 /// the reflection; its vector is kept below the diagonal.
 #[inline]
 pub(super) fn reflect_rest(
     a: &mut Matrix,
+    columns: usize,
     j: usize,
     norm: f64,
     mut f: impl FnMut(usize, &[f64]),
@@ -229,7 +230,7 @@ pub(super) fn reflect_rest(
     v[0] = diagonal;
     v[1..].iter_mut().for_each(|x| *x /= first);
     let below = &v[1..];
-    for (l, column) in rest.chunks_exact_mut(m).enumerate() {
+    for (l, column) in rest.chunks_exact_mut(m).take(columns - j - 1).enumerate() {
         let (top, bottom) = column[j..].split_at_mut(1);
         let along = factor * (top[0] + dot(below, bottom));
         top[0] -= along;

@@ -33,6 +33,8 @@ pub(in crate::control) struct Level {
     transposed: Matrix,
     right: Elimination,
     ordered: Vec<f64>,
+    /// Columns that are not zero.
+    moving: Vec<usize>,
     damped: Damped,
     clamped: Vec<bool>,
 }
@@ -61,6 +63,7 @@ impl Level {
             transposed: Matrix::zeros(n, m.min(n)),
             right: Elimination::workspace(m.min(n)),
             ordered: vec![0.0; n],
+            moving: Vec::with_capacity(n),
             damped: Damped::new(m, n),
             clamped: vec![false; n],
         }
@@ -109,39 +112,42 @@ impl Level {
 
     /// The least x that minimises |projected x - residual| where the rank is clear; false elsewhere.
     pub(super) fn least_squares(&mut self, x: &mut [f64]) -> bool {
-        let (m, n) = (self.rows.rows(), self.rows.cols());
-        let Self { system, left, transposed, right, ordered, projected, .. } = self;
-        let (entries, last) = system.as_mut_slice().split_at_mut(m * n);
-        entries.copy_from_slice(projected.as_slice());
-        last.copy_from_slice(&self.residual);
+        let Self { system, left, transposed, right, ordered, projected, moving, .. } = self;
+        // Working rows of single unknowns leave columns of zeros.
+        moving.clear();
+        for j in 0..projected.cols() {
+            let column = projected.column(j);
+            if column.iter().any(|a| *a != 0.0) {
+                system.column_mut(moving.len()).copy_from_slice(column);
+                moving.push(j);
+            }
+        }
+        let n = moving.len();
+        system.column_mut(n).copy_from_slice(&self.residual);
         let gap = CLEAR.times(self.scale);
-        if !left.eliminate(system, n, gap) {
+        if !left.eliminate_beside(system, n, 1, gap) {
             return false;
         }
         let rank = left.rank();
         x.fill(0.0);
-        if rank == 0 {
+        if rank == n {
+            ordered[..n].copy_from_slice(&system.column(n)[..n]);
+            left.solve(system, &mut ordered[..n]);
+        } else if rank > 0 {
+            transposed.as_mut_slice().fill(0.0);
+            for i in 0..rank {
+                let column = transposed.column_mut(i)[..n].iter_mut().enumerate();
+                column.skip(i).for_each(|(j, t)| *t = system[(i, j)]);
+            }
+            if !right.eliminate_beside(transposed, rank, 0, gap) || right.rank() < rank {
+                return false;
+            }
+            right.least_solution(transposed, &system.column(n)[..rank], ordered);
+        } else {
             return true;
         }
-        let moves = |j: &usize| projected.column(*j).iter().any(|a| *a != 0.0);
-        if rank == (0..n).filter(moves).count() {
-            // Of independent columns, where working rows are those of single unknowns.
-            ordered[..rank].copy_from_slice(&system.column(n)[..rank]);
-            left.solve(system, &mut ordered[..rank]);
-            ordered[..rank].iter().zip(left.order()).for_each(|(value, &j)| x[j] = *value);
-            return true;
-        }
-        for i in 0..rank {
-            let column = transposed.column_mut(i);
-            column[..i].fill(0.0);
-            column.iter_mut().enumerate().skip(i).for_each(|(j, t)| *t = system[(i, j)]);
-        }
-        if !right.eliminate(transposed, rank, gap) || right.rank() < rank {
-            return false;
-        }
-        right.least_solution(transposed, &system.column(n)[..rank], ordered);
-        for (value, &j) in ordered.iter().zip(left.order()) {
-            x[j] = *value;
+        for (value, &j) in ordered[..n].iter().zip(left.order()) {
+            x[moving[j]] = *value;
         }
         true
     }
