@@ -366,6 +366,36 @@ mod tests {
         }
     }
 
+    /// The form of this processor and plain arrays.
+    #[test]
+    fn registers_agree_with_arrays() {
+        let mut random = Random(3);
+        for (n, k, m) in [(5, 1, 3), (7, 0, 6), (13, 6, 7)] {
+            let mut basis = Basis::workspace(n);
+            for i in 0..k + m {
+                basis.column_mut(i).copy_from_slice(&random.vector(n));
+            }
+            let (mut lower, mut plain) = (LowerTriangle::zeros(m), LowerTriangle::zeros(m));
+            let mut columns = basis.columns.clone();
+            assert!(basis.orthonormalise(0, k, 1e-9, &mut LowerTriangle::zeros(k)));
+            let first = &mut AlignedColumns::zeros(k, k);
+            assert!(orthonormalise::<Array<4>>((), &mut columns, 0, k, 1e-9, first));
+            assert!(basis.orthonormalise(k, m, 1e-9, &mut lower));
+            assert!(orthonormalise::<Array<4>>((), &mut columns, k, m, 1e-9, &mut plain.entries));
+            assert_close("columns", &basis.columns.data, &columns.data, 1e-11);
+            assert_close("triangle", &lower.entries.data, &plain.entries.data, 1e-11);
+            let x = random.vector(n);
+            let (mut these, mut those) = (x.clone(), x);
+            basis.project_out(k + m, &mut these);
+            project_out::<Array<4>>((), &columns, k + m, &mut those);
+            assert_close("outside", &these, &those, 1e-11);
+            for least in [1e-9, 1e-3, 0.1, 0.5, 2.0] {
+                let clear = is_clear::<Array<4>>((), &mut plain, m, least);
+                assert_eq!(lower.is_clear(m, least), clear, "{n} {k} {m} {least}");
+            }
+        }
+    }
+
     /// A row that depends on the others, a zero row and one that is not finite are found.
     #[test]
     fn dependent_rows_are_found() {

@@ -116,6 +116,8 @@ pub(in crate::control) struct ActiveSet {
     direction: Vec<f64>,
     gradient: Vec<f64>,
     normal: Vec<f64>,
+    /// The point of a level performed as a whole, while its inequalities are not known to permit it.
+    candidate: Vec<f64>,
     /// The sign of the bound at which each row stood in the last solution; 0 if at none.
     last: Vec<f64>,
     /// Rounds since the start.
@@ -140,6 +142,7 @@ impl ActiveSet {
             direction: vec![0.0; n],
             gradient: vec![0.0; n],
             normal: vec![0.0; n],
+            candidate: vec![0.0; n],
             last: vec![0.0; r],
             #[cfg(test)]
             rounds: 0,

@@ -3,7 +3,8 @@
 //! Formula  A = C Q_0^T + L Q^T, Q_0 the basis of higher levels, L lower triangular (`Basis`);
 //!          y + Q L^-1 (b - A y) performs the level, and Q continues the basis; working rows stay at
 //!          their bounds and rows that are left are taken to theirs, one by one, by motions outside Q
-//! Valid    rows whose least singular value outside Q_0 is above a bound (`LowerTriangle::is_clear`); a solution within all inequalities. Otherwise nothing changes
+//! Valid    rows whose least singular value outside Q_0 is above a bound (`LowerTriangle::is_clear`);
+//!          a solution within all inequalities. Otherwise nothing changes
 //! Why so   any point within all inequalities that performs the level is optimal for it, whichever
 //!          rows are at their bounds: lower levels release those that need not be
 //! Cost     of the order of m (k + m) n for m rows after k
@@ -84,8 +85,8 @@ impl ActiveSet {
     fn move_freely(&mut self, level: &mut Level, m: usize) -> bool {
         level.load_residual(&self.y);
         level.along.copy_from_slice(&level.residual);
-        self.gradient.copy_from_slice(&self.y);
-        level.add_least_motion(&self.basis, self.fixed, m, &mut self.gradient);
+        self.candidate.copy_from_slice(&self.y);
+        level.add_least_motion(&self.basis, self.fixed, m, &mut self.candidate);
         self.fixed += m;
         let is_held = (0..self.working.len()).all(|k| {
             let Working { row, sign } = self.working[k];
@@ -100,20 +101,21 @@ impl ActiveSet {
             self.fixed -= m;
             return false;
         }
-        for (i, (y, x)) in self.y.iter_mut().zip(&self.gradient).enumerate() {
-            match self.uses.get(i) {
-                Some(Use::Fixed) if i < self.inequalities.boxed() => {}
-                _ => *y = *x,
+        let boxed = self.inequalities.boxed();
+        for (i, (y, x)) in self.y.iter_mut().zip(&self.candidate).enumerate() {
+            // Single unknowns keep their bounds to the last bit.
+            if i >= boxed || self.uses[i] != Use::Fixed {
+                *y = *x;
             }
         }
-        for w in self.working.iter().filter(|w| w.row < self.inequalities.boxed()) {
+        for w in self.working.iter().filter(|w| w.row < boxed) {
             self.y[w.row] = self.inequalities.bound(w.row, w.sign);
         }
         true
     }
 
-    /// Adds the rows that the point in `gradient` leaves, the worst first, and takes it to their
-    /// bounds; false if one of them depends on the others.
+    /// Adds the rows that the candidate leaves, the worst first, and takes it to their bounds;
+    /// false if one of them depends on the others.
     fn add_bounds(&mut self) -> bool {
         loop {
             let mut worst = (0.0, None);
@@ -121,7 +123,7 @@ impl ActiveSet {
                 if matches!(self.uses[i], Use::Working | Use::Fixed) {
                     continue;
                 }
-                let value = self.inequalities.value(i, &self.gradient);
+                let value = self.inequalities.value(i, &self.candidate);
                 let (excess, sign) = self.inequalities.excess(i, value);
                 let share = excess / self.inequalities.length(i).max(f64::MIN_POSITIVE);
                 if share > worst.0 {
@@ -129,7 +131,7 @@ impl ActiveSet {
                 }
             }
             let Some((row, sign)) = worst.1 else {
-                return self.gradient.iter().all(|x| x.is_finite());
+                return self.candidate.iter().all(|x| x.is_finite());
             };
             if !self.add(row, sign) {
                 return false;
@@ -138,14 +140,14 @@ impl ActiveSet {
         }
     }
 
-    /// Takes the point in `gradient` to the bound of the k-th working row, along its own direction in
+    /// Takes the candidate to the bound of the k-th working row, along its own direction in
     /// the basis: the rows before stay.
     fn advance_to_bound(&mut self, k: usize) {
         let Working { row, sign } = self.working[k];
         let excess =
-            self.inequalities.value(row, &self.gradient) - self.inequalities.bound(row, sign);
+            self.inequalities.value(row, &self.candidate) - self.inequalities.bound(row, sign);
         let way = -sign * excess / self.triangle[(k, k)];
         let column = self.basis.column(self.fixed + k);
-        self.gradient.iter_mut().zip(column).for_each(|(x, q)| *x += way * q);
+        self.candidate.iter_mut().zip(column).for_each(|(x, q)| *x += way * q);
     }
 }
