@@ -43,7 +43,10 @@ export class Compare {
     session.on("compare", (comparison) => this.show(comparison));
     session.on("state", () => this.later());
     session.on("failure", ({ reply_to, message }) => {
-      if (reply_to === this.asked) fill(this.result, empty(message));
+      if (reply_to !== this.asked) return;
+      fill(this.result, empty(message));
+      // The next state asks again: what refused it may have passed.
+      this.question = "";
     });
   }
 
