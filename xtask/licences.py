@@ -25,12 +25,13 @@ WORDS = {
     "Apache Software License": "Apache-2.0",
     "BSD 3-Clause License": "BSD-3-Clause",
     "BSD License": "BSD-3-Clause",
+    "ISC license": "ISC",
     "MIT License": "MIT",
     "Mozilla Public License 2.0 (MPL 2.0)": "MPL-2.0",
     "Python Software Foundation License": "PSF-2.0",
 }
 #: Packages whose metadata have no licence: that of their files.
-BY_HAND = {"cmeel-qhull": "Qhull"}
+BY_HAND = {"cmeel-qhull": "Qhull", "ptyprocess": "ISC"}
 
 root = pathlib.Path(__file__).parent.parent
 usual = set(tomllib.loads((root / "deny.toml").read_text())["licenses"]["allow"])
@@ -54,6 +55,7 @@ def python_licence(metadata):
         if line.startswith("License ::") and (word := line.split(" :: ")[-1]) in WORDS
     ]
     line = (metadata.get("License") or "").split("\n")[0].strip()
+    line = "" if line == "UNKNOWN" else line
     return (
         " OR ".join(known)
         or WORDS.get(line, line if len(line) < 30 else "")
