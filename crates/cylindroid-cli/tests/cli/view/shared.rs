@@ -105,6 +105,8 @@ fn a_session_lasts_as_long_as_somebody_is_in_it() {
     let mut first = server.client_of("?session=demo");
     first.done(joint(0.25));
     let mut second = server.client_of("?session=demo");
+    // It is in the session before the first one leaves.
+    told(&mut second, "another", 2);
     drop(first);
     told(&mut second, "nobody", 1);
     assert_eq!(server.client_of("?session=demo").next("state")["q"][0], 0.25);
