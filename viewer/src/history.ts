@@ -53,7 +53,9 @@ export class History {
     [this.kind, this.last] = [kind, now];
     const moment = this.now();
     if (goesOn || !moment) return;
-    this.past.push(moment);
+    // Two messages in one state are one step.
+    const last = this.past.at(-1);
+    if (last?.q !== moment.q || last.frame !== moment.frame) this.past.push(moment);
     if (this.past.length > MOST) this.past.shift();
     this.future.length = 0;
     this.tell();

@@ -2,8 +2,8 @@
 import { h } from "./dom";
 
 export type Layout = {
-  bar: HTMLElement; left: HTMLElement; right: HTMLElement; stage: HTMLElement;
-  tools: HTMLElement; legend: HTMLElement; banner: HTMLElement;
+  bar: HTMLElement; left: HTMLElement; right: HTMLElement; plots: HTMLElement; stage: HTMLElement;
+  tools: HTMLElement; legend: HTMLElement; dock: HTMLElement; banner: HTMLElement;
   /** One of a `key` takes the place of the last. */
   toast: (words: string, bad?: boolean, key?: string) => void;
 };
@@ -15,6 +15,8 @@ export function layout(root: HTMLElement): Layout {
   const bar = h("header", { class: "bar" });
   const left = h("aside", { class: "side left", "aria-label": "Controls" });
   const right = h("aside", { class: "side right", "aria-label": "Measures" });
+  const plots = h("aside", { class: "plots", "aria-label": "Recording" });
+  const dock = h("div", { class: "dock", role: "group", "aria-label": "Playing back" });
   const tools = h("div", { class: "float top", role: "toolbar", "aria-label": "View" });
   const legend = h("div", { class: "legend", role: "region", "aria-label": "Legend", tabindex: 0 });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
@@ -22,8 +24,8 @@ export function layout(root: HTMLElement): Layout {
   // The legend lies below the view, not over the robot.
   const picture = h("div", { class: "picture" });
   const view = h("div", { class: "view" }, picture, tools, banner, toasts);
-  const stage = h("main", { class: "stage", "aria-label": "Robot" }, view, legend);
-  root.append(h("div", { class: "shell" }, bar, left, stage, right));
+  const stage = h("main", { class: "stage", "aria-label": "Robot" }, view, dock, legend);
+  root.append(h("div", { class: "shell" }, bar, left, stage, plots, right));
   const toast = (words: string, bad = false, key = words): void => {
     [...toasts.children].find((child) => child.getAttribute("data-key") === key)?.remove();
     const close = h("button", { type: "button", "aria-label": "Close", onclick: () => {
@@ -35,5 +37,5 @@ export function layout(root: HTMLElement): Layout {
     while (toasts.children.length > MOST_TOASTS) toasts.firstElementChild?.remove();
     setTimeout(() => made.remove(), TOAST_TIME);
   };
-  return { bar, left, right, stage: picture, tools, legend, banner, toast };
+  return { bar, left, right, plots, stage: picture, tools, legend, dock, banner, toast };
 }

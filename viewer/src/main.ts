@@ -10,7 +10,9 @@ import { isTyping, Tools } from "./controls/tools";
 import { UnitControls } from "./controls/units";
 import { socketUrl } from "./connection";
 import { h } from "./dom";
+import { download } from "./download";
 import { Drawings } from "./drawings";
+import { askForFiles, onDrop } from "./files";
 import { History } from "./history";
 import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
@@ -25,7 +27,6 @@ import { Reports } from "./panels/reports";
 import { screwsPanel } from "./panels/screws";
 import { singularPanel } from "./panels/singular";
 import type { Scene, State } from "./protocol";
-import { download, Recorder } from "./recorder";
 import { Restore } from "./restore";
 import { Collisions } from "./robot/collisions";
 import { Robot } from "./robot/robot";
@@ -34,6 +35,7 @@ import { Stage } from "./scene/stage";
 import { Session } from "./session";
 import { fragment } from "./share";
 import { Target } from "./target";
+import { Timeline, type Moment } from "./timeline/timeline";
 import { inUnits } from "./units";
 
 const root = document.getElementById("app");
@@ -43,6 +45,14 @@ const page = layout(root);
 function start(): void {
   const stage = new Stage(page.stage);
   const session = new Session(socketUrl("./ws"), () => stage.invalidate());
+  const timeline = new Timeline(page.dock, session, {
+    redraw: () => redraw(),
+    wake: () => stage.invalidate(),
+    say: page.toast,
+    changed: (recording, states) => bar.recorded(recording, states),
+    wanted: () => ({ overlays: overlays.names(), distances: distances.panel.isOpen() }),
+    size: () => size,
+  });
   let problemsTold = "";
   const robot = new Robot({
     changed: () => stage.invalidate(),
@@ -53,7 +63,7 @@ function start(): void {
       }
       problemsTold = told;
       if (robot.hasShapes && untouched) fitWanted = true;
-      if (session.scene && session.state) draw(session.scene, session.state);
+      redraw();
     },
   });
   const labels = new Labels(page.stage);
@@ -78,14 +88,16 @@ function start(): void {
   };
   const obstacles = new Obstacles(stage, { picked: hold, problem: (sentence) => page.toast(sentence, true) }, () => target.isHovered());
   const obstaclePanel = new ObstaclePanel(session, hold);
-  const recorder = new Recorder();
   let fitWanted = true;
   const fit = (): void => stage.fit(target.within(robot.box()));
   const tools = new Tools(page.tools, target, stage, fit, () => obstaclePanel.show(null));
   const joints = new Joints(session);
   const servo = new ServoControls(session);
+  /** What is shown: a moment of a recording, or the robot as it is. */
+  const shown = (): Moment | null => timeline.moment ?? (session.scene && session.state ? { scene: session.scene, state: session.state } : null);
   const redraw = (): void => {
-    if (session.scene && session.state) draw(session.scene, session.state);
+    const moment = shown();
+    if (moment) draw(moment.scene, moment.state);
     stage.invalidate();
   };
   const collisions = new Collisions(() => stage.invalidate());
@@ -115,15 +127,8 @@ function start(): void {
     reset: () => session.send({ type: "reset" }),
     undo: () => history.undo(),
     redo: () => history.redo(),
-    record: () => {
-      if (recorder.recording) recorder.stop();
-      else recorder.start();
-      session.eager = recorder.recording;
-      bar.recorded(recorder.recording, recorder.length);
-    },
-    save: (format) => {
-      if (session.scene) download(format === "json" ? recorder.json(session.scene) : recorder.csv(session.scene), `${session.scene.name}.${format}`);
-    },
+    record: () => timeline.record(),
+    open: () => askForFiles((files) => open(files)),
     picture: () => {
       stage.png().then(
         (blob) => download(blob, `${session.scene?.name ?? "cylindroid"}.png`),
@@ -133,6 +138,13 @@ function start(): void {
     share: () => void share(),
   });
   new Role(bar.status, session);
+  page.plots.append(timeline.plots.panel.element);
+  stage.scene.add(timeline.trail.group);
+  const open = (files: File[]): void => {
+    for (const file of files) void timeline.open(file);
+  };
+  onDrop(open);
+  distances.panel.onToggle(() => timeline.refresh());
   const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return;
@@ -142,7 +154,7 @@ function start(): void {
     else return;
     event.preventDefault();
   });
-  const restore = new Restore(session, overlays, stage, page.toast, () => distances.ask());
+  const restore = new Restore(session, overlays, stage, page.toast, () => distances.ask(), () => shown() ?? {});
 
   async function share(): Promise<void> {
     const shot = restore.now();
@@ -208,31 +220,23 @@ function start(): void {
     target.place(state, size);
     if (fitWanted) fitAll(scene);
     overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
-    bar.show(state);
+    if (!timeline.moment) bar.show(state);
     joints.show(state);
     servo.show(state);
     obstacles.place(state, target.dragged());
     obstaclePanel.place(state);
     distances.draw(scene, state, size);
     for (const panel of [pose, singular, screws]) panel.show(scene, state);
+    for (const panel of [mobility.panel, capability.panel, compare.panel]) panel.stale(timeline.moment !== null);
   };
   session.on("state", (state) => {
-    if (session.scene) draw(session.scene, state);
-  });
-  session.on("raw", (raw) => {
-    if (!recorder.recording) return;
-    recorder.take(raw);
-    if (recorder.isFull) {
-      recorder.stop();
-      session.eager = false;
-      page.toast("The recorder is full and has stopped; save the recording.");
-    }
-    bar.recorded(recorder.recording, recorder.length);
+    if (session.scene && !timeline.moment) draw(session.scene, state);
+    else bar.show(state);
   });
   session.on("failure", ({ reply_to, message, culprit, place }) => {
     // Controls show what is in effect, not what was refused.
     if (session.scene) for (const controls of [joints, servo]) controls.build(session.scene);
-    if (!reports.owns(reply_to) && !compare.owns(reply_to)) page.toast(message, true, `${place} ${culprit}`);
+    if (![reports, compare, timeline].some((asker) => asker.owns(reply_to))) page.toast(message, true, `${place} ${culprit}`);
   });
   session.on("about", () => {
     const observes = !session.drives;
@@ -245,11 +249,15 @@ function start(): void {
     bar.link(link);
     banner.show(link, wait);
   });
-  overlays.onChange(redraw);
+  overlays.onChange(() => {
+    timeline.refresh();
+    redraw();
+  });
   stage.onFrame(() => session.takeNewest());
+  stage.onFrame(() => timeline.flush());
   stage.onFrame(() => labels.place(stage.eye));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, target, robot, distances, collisions, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
+  Object.assign(window, { viewer: { session, stage, timeline, target, robot, distances, collisions, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
 }
 
 try {

@@ -66,17 +66,9 @@ export type Singular = {
 };
 export type Near = { a: string; b: string; distance: number; point_a: Vec3; point_b: Vec3 };
 export type Distances = { margin: number; shapes: number; pairs: number; near: Near[]; more: number };
-export type State = {
-  type: "state";
-  seq: number; time: number; ack: string | number | null; playing: boolean;
-  q: number[]; links: Pose[]; tool: Pose; target: Pose;
-  error: { position: number; orientation: number };
-  servo: {
-    status: ServoStatus; reason: string | null; sentence: string;
-    limits: { coordinate: number; kind: string }[]; pair: [string, string] | null; self_motion: number;
-    /** Linear, angular; world axes, at the tool. */
-    twist: number[] | null;
-  };
+/** What a configuration determines. */
+export type Posture = {
+  q: number[]; links: Pose[]; tool: Pose;
   singular: Singular | null;
   outside_limits: number[];
   loops: { a: Vec3; b: Vec3 }[];
@@ -86,6 +78,21 @@ export type State = {
   /** Poses in the order of the scene. */
   obstacles: Pose[];
   distances: Distances | null;
+};
+export type ActiveLimit = { coordinate: number; kind: string };
+export type State = Posture & {
+  type: "state";
+  seq: number; time: number; ack: string | number | null; playing: boolean;
+  target: Pose;
+  /** null only in motions of files. */
+  error: { position: number | null; orientation: number | null };
+  servo: {
+    status: ServoStatus; reason: string | null; sentence: string;
+    limits: ActiveLimit[]; pair: [string, string] | null; self_motion: number;
+    joint_velocities: number[] | null;
+    /** Linear, angular; world axes, at the tool. */
+    twist: number[] | null;
+  };
 };
 
 // Overlays ----------------------------------------------------------------------------------------
@@ -148,6 +155,8 @@ export type Failure = {
   type: "error"; reply_to: string | number | null;
   culprit: string; place: string; message: string; way_out: string | null; nearest: number | null;
 };
+/** In the order of the configurations that were asked for. */
+export type Postures = { type: "states"; reply_to: string | number | null; states: Posture[] };
 /** Of a session that several clients may share; others have none. */
 export type About = {
   type: "session"; name: string | null; clients: number; driver: "you" | "another" | "nobody"; program: boolean;
@@ -158,7 +167,7 @@ export type Drawing = { name: string; rgba: Colour } & (
 );
 /** All that a program draws beside the robot, in place of what it drew before. */
 export type Drawings = { type: "drawings"; drawings: Drawing[] };
-export type FromServer = Scene | State | Comparison | Report | Failure | About | Drawings;
+export type FromServer = Scene | State | Comparison | Report | Postures | Failure | About | Drawings;
 
 // To the server -----------------------------------------------------------------------------------
 
@@ -176,6 +185,8 @@ export type ToServer = { id?: string | number } & (
   | { type: "overlays"; names: OverlayName[] }
   | { type: "compare"; methods: string[]; point: Vec3; h: number | null; twist: number[] | null }
   | { type: "report"; name: ReportName }
+  /** `full`: with overlays and distances. */
+  | { type: "states"; q: number[][]; full: boolean }
   | { type: "distances"; margin: number | null }
   | ({ type: "add_obstacle"; name: string; shape: SimpleShape } & Pose)
   | ({ type: "move_obstacle"; name: string } & Pose)

@@ -1,6 +1,6 @@
 /** Brings a session to a configuration: that of the address on load, the last one after the server came back. */
 import type { Overlays } from "./overlays/overlays";
-import type { Scene } from "./protocol";
+import type { Scene, State } from "./protocol";
 import type { Stage } from "./scene/stage";
 import type { Session } from "./session";
 import { parse, snapshot, type Snapshot } from "./share";
@@ -17,6 +17,8 @@ export class Restore {
     private readonly say: (words: string, bad?: boolean) => void,
     /** Called for every new session. */
     private readonly begin: () => void,
+    /** What is shown: the session, or a moment of a recording. */
+    private readonly shown: () => Partial<{ scene: Scene | null; state: State | null }>,
   ) {
     this.read();
     addEventListener("hashchange", () => {
@@ -33,7 +35,7 @@ export class Restore {
 
   /** The configuration as it is. */
   now(): Snapshot | null {
-    const { scene, state } = this.session;
+    const { scene, state } = this.shown();
     if (!scene || !state) return null;
     const { camera, orbit } = this.stage;
     return snapshot(scene, state, this.overlays.on, [...camera.position.toArray(), ...orbit.target.toArray()], this.stage.isOrthographic);

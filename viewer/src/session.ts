@@ -1,25 +1,26 @@
 /** One session with the server: the newest scene and state, and everything that wants to know of them. */
 import { Connection, type Link } from "./connection";
 import { Outbox } from "./outbox";
-import type { About, Comparison, Drawings, Failure, FromServer, Report, Scene, State, ToServer } from "./protocol";
+import type { About, Comparison, Drawings, Failure, FromServer, Postures, Report, Scene, State, ToServer } from "./protocol";
 
 type Events = {
   scene: Scene;
   state: State;
   compare: Comparison;
   report: Report;
+  states: Postures;
   failure: Failure;
   about: About;
   drawings: Drawings;
   /** A message, before it goes. */
   sending: ToServer;
   link: { link: Link; wait: number };
-  /** A state as it came, before any is dropped: for the recorder. */
+  /** A state as it came, before any is dropped: for recordings. */
   raw: string;
 };
 
 /** What an observer may send. */
-const OBSERVES: readonly ToServer["type"][] = ["overlays", "compare", "report", "distances", "drive", "seen"];
+const OBSERVES: readonly ToServer["type"][] = ["overlays", "compare", "report", "states", "distances", "drive", "seen"];
 
 const STATE_START = '{"type":"state"';
 const ACK = /"ack":(\d+)/;
@@ -119,7 +120,7 @@ export class Session {
     } else if (message.type === "error") {
       this.outbox.answered(message.reply_to);
       this.emit("failure", message);
-    } else if (message.type === "compare" || message.type === "report") {
+    } else if (message.type === "compare" || message.type === "report" || message.type === "states") {
       this.emit(message.type as "compare", message as Comparison);
     }
   }

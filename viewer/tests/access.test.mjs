@@ -50,6 +50,9 @@ for (const [words, args, looks] of MODELS) {
           await page.locator(".toast.bad").waitFor();
           assert.deepEqual(await violations(page), [], "all panels open");
           await page.getByRole("button", { name: /^Stop recording/ }).click();
+          for (const name of ["Joint velocities", "Error", "Distances to limits"]) await page.getByRole("button", { name, exact: true }).click();
+          await page.getByLabel("Time of the recording [s]").press("Home");
+          await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.moment);
           assert.deepEqual(await violations(page), [], "with a recording");
         }, { width, height, dark });
       }
@@ -68,10 +71,12 @@ for (const [width, height] of /** @type {const} */ ([[1366, 768], [844, 390], [3
     visit([CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3"], async (page) => {
       for (const name of PANELS) await openPanel(page, name);
       await showOverlay(page, "velocity-ellipsoid");
+      await page.getByRole("button", { name: "Record" }).click();
+      await page.getByRole("button", { name: /^Stop recording/ }).click();
       await page.locator('[data-panel="compare"] table').waitFor();
       await page.evaluate(() => scrollTo(0, 0));
       const wanted = await page.evaluate(() => {
-        const all = [...document.querySelectorAll("button, input, select, summary, canvas, [tabindex]")].filter((element) => {
+        const all = [...document.querySelectorAll("button, input, select, summary, canvas[tabindex], [tabindex]")].filter((element) => {
           const { disabled } = /** @type {HTMLInputElement} */ (element);
           return !disabled && element.checkVisibility() && !element.closest(".pad");
         });

@@ -9,13 +9,13 @@ const { look, visit } = browserOfFile();
 const CELL = fileURLToPath(new URL("../../docs/cell.toml", import.meta.url));
 /** Width, height, and whether it is looked at light alone or dark as well. */
 const SIZES = /** @type {const} */ ([[390, 844, 2], [768, 1024, 1], [830, 700, 1], [844, 390, 2], [1100, 800, 2], [1366, 768, 2], [1920, 1080, 2]]);
-const ALL = ["joints", "show", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
+const ALL = ["plots", "joints", "show", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
 
 /**
  * Buttons of the bar and the view that are outside of the window, or under something else.
  * @param {import("playwright-core").Page} page
  */
-const outOfReach = (page) => page.evaluate(() => [...document.querySelectorAll(".bar button, .bar .status, .float button")].filter((element) => {
+const outOfReach = (page) => page.evaluate(() => [...document.querySelectorAll(".bar button, .bar .status, .float button, .dock :is(button, select, input)")].filter((element) => {
   const box = element.getBoundingClientRect();
   if (box.width === 0) return false;
   const top = document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2);
@@ -37,7 +37,7 @@ const wide = (page) => page.evaluate(() => {
  * @param {import("playwright-core").Page} page
  */
 const cut = (page) => page.evaluate(() => {
-  const words = [...document.querySelectorAll(".side *")].filter((element) => element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible" && element.clientWidth > 0);
+  const words = [...document.querySelectorAll(":is(.side, .plots) *")].filter((element) => element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).overflowX === "visible" && element.clientWidth > 0);
   const fields = [...document.querySelectorAll("input.field")].filter((element) => element.scrollWidth > element.clientWidth);
   return [...words, ...fields].map((element) => `${element.tagName}.${element.className} ${element.getAttribute("aria-label") ?? element.textContent?.slice(0, 40)}`);
 });

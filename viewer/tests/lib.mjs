@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { execFile, spawn } from "node:child_process";
 import { existsSync } from "node:fs";
+import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { promisify } from "node:util";
@@ -310,4 +311,26 @@ export async function drag(page, way) {
   const place = await page.evaluate(() => /** @type {number[]} */ (/** @type {any} */ (window).viewer.target.gizmo.object.position.toArray()));
   await page.mouse.up();
   return place;
+}
+
+/**
+ * What a button saves.
+ * @param {Page} page
+ * @param {string} name of the button
+ * @param {BufferEncoding} encoding
+ */
+export async function saved(page, name, encoding = "utf8") {
+  const coming = page.waitForEvent("download");
+  await page.getByRole("button", { name }).click();
+  return readFile(await (await coming).path(), encoding);
+}
+
+/**
+ * Opens a file by the dialogue.
+ * @param {Page} page
+ * @param {string} path
+ */
+export async function openFile(page, path) {
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "Open a file" }).click()]);
+  await chooser.setFiles(path);
 }

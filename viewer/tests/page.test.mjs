@@ -1,9 +1,8 @@
 /** The page beside the robot: lost servers, the recorder, addresses, theme, keyboard. */
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
 import { test } from "node:test";
 import {
-  apart, browserOfFile, enter, launch, moveTarget, picture, served, showOverlay, state, until, untilNear, untilReached,
+  apart, browserOfFile, enter, launch, moveTarget, picture, saved, served, showOverlay, state, until, untilNear, untilReached,
 } from "./lib.mjs";
 
 const { look, visit } = browserOfFile();
@@ -58,22 +57,10 @@ test("the recorder gives every state as JSON and as CSV, and a PNG of the view",
     const lines = (await saved(page, "Save the recording as CSV")).trim().split("\r\n");
     assert.equal(lines.length, json.states.length + 1);
     assert.equal(lines[0]?.split(",")[1], json.joint_names[0]);
-    assert.equal(Number(lines[1]?.split(",")[0]), json.states[0].time);
+    assert.equal(Number(lines[1]?.split(",")[0]), json.times[0]);
     const picture = await saved(page, "Save a picture", "latin1");
     assert.equal(picture.slice(1, 4), "PNG");
   }));
-
-/**
- * What a button saves.
- * @param {import("playwright-core").Page} page
- * @param {string} name
- * @param {BufferEncoding} encoding
- */
-async function saved(page, name, encoding = "utf8") {
-  const coming = page.waitForEvent("download");
-  await page.getByRole("button", { name }).click();
-  return readFile(await (await coming).path(), encoding);
-}
 
 test("an address carries the configuration, overlays and camera; a foreign one is refused in words", () =>
   served(["panda"], async ({ url }) => {

@@ -1,4 +1,4 @@
-/** The bar: which model, play and reset, the recorder, picture and address, theme. */
+/** The bar: which model, play and reset, recording, files, picture and address, theme. */
 import { fill, h, text } from "../dom";
 import { count } from "../format";
 import { icon, type Icon } from "../icons";
@@ -8,7 +8,7 @@ import type { Link } from "../connection";
 
 export type BarActions = {
   play: () => void; pause: () => void; reset: () => void; undo: () => void; redo: () => void;
-  record: () => void; save: (format: "json" | "csv") => void; picture: () => void; share: () => void;
+  record: () => void; open: () => void; picture: () => void; share: () => void;
 };
 
 function button(label: string, name: Icon, action: () => void, shown = label): HTMLButtonElement {
@@ -21,7 +21,6 @@ export class Bar {
   readonly status = h("span", { class: "status", role: "status" }, "connecting");
   private readonly play: HTMLButtonElement;
   private readonly record: HTMLButtonElement;
-  private readonly saves: HTMLElement;
   private readonly themeButton = button("Theme", "system", () => nextTheme(), "");
   private readonly reset: HTMLButtonElement;
   private readonly undo: HTMLButtonElement;
@@ -36,12 +35,6 @@ export class Bar {
     this.undoable(false, false);
     this.record = button("Record", "record", actions.record);
     this.record.setAttribute("aria-pressed", "false");
-    this.saves = h(
-      "span", { class: "group" },
-      h("button", { class: "button", type: "button", onclick: () => actions.save("json"), "aria-label": "Save the recording as JSON" }, "JSON"),
-      h("button", { class: "button", type: "button", onclick: () => actions.save("csv"), "aria-label": "Save the recording as CSV" }, "CSV"),
-    );
-    this.saves.hidden = true;
     bar.append(
       h("h1", { class: "brand" }, h("img", { src: "./icon.svg", alt: "" }), "cylindroid"),
       this.model,
@@ -51,7 +44,7 @@ export class Bar {
       h("span", { class: "group", role: "group", "aria-label": "History" }, this.undo, this.redo),
       h("span", { class: "rule" }),
       this.record,
-      this.saves,
+      button("Open a file", "open", actions.open, "Open"),
       button("Save a picture as PNG", "picture", actions.picture, "PNG"),
       button("Copy a link to this configuration", "share", actions.share, "Link"),
       this.themeButton,
@@ -105,7 +98,6 @@ export class Bar {
     const words = this.record.querySelector("span");
     if (words) text(words, label);
     this.record.setAttribute("aria-label", recording ? `Stop recording, ${count(states, "state")}` : "Record");
-    this.saves.hidden = recording || states === 0;
   }
 
   private paint(): void {

@@ -5,6 +5,8 @@ export type Panel = {
   element: HTMLDetailsElement;
   body: HTMLElement;
   note: (words: string) => void;
+  /** While a recording is shown: the values are not of it, but of the robot as it is. */
+  stale: (stale: boolean) => void;
   isOpen: () => boolean;
   onToggle: (work: (open: boolean) => void) => void;
 };
@@ -14,7 +16,8 @@ const KEY = "cylindroid-panel-";
 export function panel(name: string, title: string, open: boolean): Panel {
   const words = h("span", { class: "note" });
   const body = h("div", { class: "body" });
-  const element = h("details", { class: "panel", "data-panel": name }, h("summary", {}, h("h2", {}, title), words), body);
+  const warning = h("p", { class: "doubt", hidden: true }, "Of the robot as it is, not of the recording");
+  const element = h("details", { class: "panel", "data-panel": name }, h("summary", {}, h("h2", {}, title), words), warning, body);
   element.open = remembered(name) ?? open;
   element.addEventListener("toggle", () => {
     try {
@@ -27,6 +30,9 @@ export function panel(name: string, title: string, open: boolean): Panel {
     element,
     body,
     note: (value) => text(words, value),
+    stale: (stale) => {
+      if (warning.hidden === stale) warning.hidden = !stale;
+    },
     isOpen: () => element.open,
     onToggle: (work) => element.addEventListener("toggle", () => work(element.open)),
   };

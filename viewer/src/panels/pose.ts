@@ -76,8 +76,8 @@ function poseTable(): { element: HTMLElement; show: (tool: Pose, target: Pose) =
   };
 }
 
-function inUnit(value: number, quantity: Quantity, digits: number): string {
-  return fixed(shown(value, quantity), digitsOf(quantity, digits));
+function inUnit(value: number | null, quantity: Quantity, digits: number): string {
+  return fixed(value === null ? null : shown(value, quantity), digitsOf(quantity, digits));
 }
 
 /** Of the two quaternions of a rotation the one nearer to another. */

@@ -6,6 +6,7 @@ use serde_json::Value;
 use super::avoidance::{GAP, MARGIN};
 use super::client_view::ClientView;
 use super::compare::compare;
+use super::elsewhere::states;
 use super::inverse_parameters::invert_by;
 use super::messages::{Complaint, Message, Request, TargetPose, TwistCommand};
 use super::names::Overlay;
@@ -105,6 +106,7 @@ fn obey(
             view.overlays = all;
         }
         Message::Compare(asked) => return compare(session, &asked, id).map(Reply::Text),
+        Message::States(asked) => return states(session, view, &asked, id).map(Reply::Text),
         Message::Report(asked) => {
             return Report::new(session, &asked.name, id).map(Reply::Report);
         }

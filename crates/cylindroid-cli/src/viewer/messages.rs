@@ -38,6 +38,7 @@ pub(super) enum Message {
     Overlays(Names),
     Compare(Compare),
     Report(Name),
+    States(States),
     Distances(Distances),
     AddObstacle(AddObstacle),
     MoveObstacle(MoveObstacle),
@@ -55,6 +56,7 @@ impl Message {
             Self::Overlays(_)
                 | Self::Compare(_)
                 | Self::Report(_)
+                | Self::States(_)
                 | Self::Distances(_)
                 | Self::Drive(_)
                 | Self::Seen(_)
@@ -63,7 +65,7 @@ impl Message {
     }
 }
 
-const TYPES: [&str; 22] = [
+const TYPES: [&str; 23] = [
     "joint",
     "configuration",
     "target",
@@ -79,6 +81,7 @@ const TYPES: [&str; 22] = [
     "overlays",
     "compare",
     "report",
+    "states",
     "distances",
     "add_obstacle",
     "move_obstacle",
@@ -168,6 +171,15 @@ pub(super) struct Compare {
 #[serde(deny_unknown_fields)]
 pub(super) struct Drive {
     pub(super) on: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct States {
+    pub(super) q: Vec<Vec<f64>>,
+    /// With overlays and distances.
+    #[serde(default)]
+    pub(super) full: bool,
 }
 
 #[derive(Debug, Deserialize)]

@@ -4,8 +4,8 @@
 //! `obstacle_messages`, `messages`, `names`, `inverse_parameters`, `assets`, `reaching` and
 //! `avoidance` do not depend on a session; `start` is the initial state of sessions, `bodies` their
 //! obstacles and distances; `session` is a configuration with target and servo; `client_view` what
-//! one client wants to see of it; `measures`, `overlays`, `compare`, `reports`, `snapshot` and
-//! `scene` describe a session; `dispatcher` executes messages; `shared_session` moves a session in
+//! one client wants to see of it; `measures`, `overlays`, `posture`, `elsewhere`, `compare`, `reports`,
+//! `snapshot` and `scene` describe a session; `dispatcher` executes messages; `shared_session` moves a session in
 //! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it;
 //! `socket` talks to one client; `safety` protects `server`, which listens; `embedded` is all of it
 //! inside another program, with its `drawings` and `drags`. All mathematics is in the library.
@@ -18,6 +18,7 @@ mod compare;
 mod dispatcher;
 mod drags;
 mod drawings;
+mod elsewhere;
 mod embedded;
 mod inverse_parameters;
 mod json;
@@ -27,6 +28,7 @@ mod messages;
 mod names;
 mod obstacle_messages;
 mod overlays;
+mod posture;
 mod reaching;
 mod reports;
 mod safety;

@@ -3,6 +3,7 @@
 //! Independent of sockets and real time: messages change it, and steps move it.
 
 mod collisions;
+mod elsewhere;
 mod followed;
 mod twist_command;
 mod velocity_mode;

@@ -1,18 +1,14 @@
 //! The message `state`: the current state of a session, as one of its clients sees it.
 
-use std::collections::BTreeMap;
-
-use cylindroid::closure::LoopClosureError;
 use cylindroid::control::Status;
-use cylindroid::{Pose, Result, Twist};
+use cylindroid::{Result, Twist};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::bodies::DistancesJson;
 use super::client_view::ClientView;
 use super::json::{PoseJson, text};
 use super::measures::Measures;
-use super::overlays::{Shown, shown};
+use super::posture::{PostureJson, posture};
 use super::session::Session;
 use crate::commands::move_to::sentences::cause;
 
@@ -23,20 +19,11 @@ struct StateJson<'a> {
     time: f64,
     ack: Option<&'a Value>,
     playing: bool,
-    q: &'a [f64],
-    links: Vec<PoseJson>,
-    tool: PoseJson,
     target: PoseJson,
     error: ErrorJson,
     servo: &'a ServoJson,
-    singular: Option<SingularJson>,
-    outside_limits: Vec<usize>,
-    loops: Vec<LoopJson>,
-    contacts: Vec<ContactJson>,
-    closure_error: Option<ClosureErrorJson>,
-    overlays: BTreeMap<&'static str, Shown>,
-    obstacles: Vec<PoseJson>,
-    distances: Option<DistancesJson<'a>>,
+    #[serde(flatten)]
+    posture: PostureJson<'a>,
 }
 
 #[derive(Debug, Serialize)]
@@ -53,6 +40,7 @@ struct ServoJson {
     limits: Vec<LimitJson>,
     pair: Option<[String; 2]>,
     self_motion: f64,
+    joint_velocities: Option<Vec<f64>>,
     /// Linear, angular; world axes, at the tool.
     twist: Option<[f64; 6]>,
 }
@@ -61,36 +49,6 @@ struct ServoJson {
 struct LimitJson {
     coordinate: usize,
     kind: &'static str,
-}
-
-#[derive(Debug, Serialize)]
-struct SingularJson {
-    values: Vec<f64>,
-    threshold: f64,
-    rank: usize,
-    gap: f64,
-    ratio: f64,
-    length: f64,
-}
-
-#[derive(Debug, Serialize)]
-struct LoopJson {
-    a: [f64; 3],
-    b: [f64; 3],
-}
-
-#[derive(Debug, Serialize)]
-struct ContactJson {
-    point: [f64; 3],
-    normal: [f64; 3],
-    other: [f64; 3],
-}
-
-#[derive(Debug, Serialize)]
-struct ClosureErrorJson {
-    distance: f64,
-    angle: f64,
-    closed: bool,
 }
 
 /// The parts of a state that are computed once for all clients.
@@ -114,61 +72,18 @@ pub(super) fn snapshot(
     view: &ClientView,
     seq: u64,
 ) -> Result<String> {
-    session.find_near(view.margin)?;
-    let session = &*session;
-    let (mechanism, state, options) = (session.mechanism(), session.state(), session.options());
-    let poses: Vec<Pose> = mechanism
-        .frame_ids()
-        .take(mechanism.links().len())
-        .map(|frame| state.pose(frame))
-        .collect();
-    let tool = state.pose(options.end_effector);
-    let error = options.task.error(tool, session.target());
-    let loops = mechanism.loops().iter().map(|l| LoopJson {
-        a: (poses[l.a] * l.link_a_from_joint).translation.to_array(),
-        b: (poses[l.b] * l.link_b_from_joint).translation.to_array(),
-    });
-    let contacts = mechanism.contacts().iter().map(|c| {
-        let on_a = poses[c.a] * c.link_a_from_contact;
-        ContactJson {
-            point: on_a.translation.to_array(),
-            normal: on_a.rotation.z_axis().to_array(),
-            other: (poses[c.b] * c.link_b_from_contact).translation.to_array(),
-        }
-    });
-    let closure_error =
-        if mechanism.is_closed() { Some(LoopClosureError::of(state)?) } else { None };
-    let overlays = view.overlays.iter();
+    let options = session.options();
+    let error = options.task.error(session.state().pose(options.end_effector), session.target());
+    let (time, playing, target) = (session.time(), session.is_playing(), session.target().into());
     Ok(text(&StateJson {
         seq,
-        time: session.time(),
+        time,
         ack: view.ack.as_ref(),
-        playing: session.is_playing(),
-        q: state.q(),
-        links: poses.iter().map(|p| (*p).into()).collect(),
-        tool: tool.into(),
-        target: session.target().into(),
+        playing,
+        target,
         error: ErrorJson { position: error.linear.norm(), orientation: error.angular.norm() },
         servo,
-        singular: measures.as_ref().map(|m| SingularJson {
-            values: m.condition.inverse.singular_values.clone(),
-            threshold: m.condition.inverse.threshold,
-            rank: m.condition.inverse.rank,
-            gap: m.condition.inverse.gap,
-            ratio: m.condition.singular_ratio,
-            length: m.length,
-        }),
-        outside_limits: mechanism.outside_limits(state.q()).collect(),
-        loops: loops.collect(),
-        contacts: contacts.collect(),
-        closure_error: closure_error.map(|g| ClosureErrorJson {
-            distance: g.distance,
-            angle: g.angle,
-            closed: g.is_closed(mechanism.reach()),
-        }),
-        overlays: overlays.map(|o| (o.name(), shown(*o, session, measures.as_ref()))).collect(),
-        obstacles: session.obstacles().iter().map(|o| o.world_from_shape.into()).collect(),
-        distances: session.distances(view.margin),
+        posture: posture(session, measures.as_ref(), &view.overlays, view.margin)?,
     }))
 }
 
@@ -181,6 +96,7 @@ fn servo(session: &Session) -> ServoJson {
         limits: limits(session),
         pair: last.and_then(|last| last.pair.clone()),
         self_motion: session.self_motion(),
+        joint_velocities: session.joint_velocities().map(<[f64]>::to_vec),
         twist: session.twist().map(Twist::to_array),
     };
     if let Some(fault) = session.fault() {

@@ -51,7 +51,7 @@ fn reports_are_those_of_the_commands() {
 }
 
 /// Equal, numbers up to the rounding of their way through text.
-fn same(a: &Value, b: &Value, place: &str) {
+pub(super) fn same(a: &Value, b: &Value, place: &str) {
     match (a, b) {
         (Value::Object(x), Value::Object(y)) => {
             assert!(x.keys().eq(y.keys()), "{place}: {a} and {b}");

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::choices::same;
 use super::{Server, configuration};
 use crate::{difference, numbers};
 
@@ -226,4 +227,51 @@ fn configurations_are_assembled() {
     assert_eq!(state["closure_error"]["closed"], true);
     let short = client.complaint(&json!({"type": "configuration", "q": [0, 1]}));
     assert!(short["message"].as_str().unwrap().contains("expected"), "{short}");
+}
+
+/// States at other configurations are those of a session that goes there; the asking one stays.
+#[test]
+fn states_elsewhere_are_those_of_a_session_that_is_there() {
+    for (model, joint, value) in [("panda", "panda_joint2", 0.3), ("five-bar", "q1", 0.05)] {
+        let server = Server::new(&[model]);
+        let [mut here, mut there] = [server.client(), server.client()];
+        let names = json!({"type": "overlays", "names": ["joint-axes", "velocity-ellipsoid"]});
+        here.say(&names);
+        there.say(&names);
+        let home = here.done(json!({"type": "distances", "margin": 0.5}));
+        there.say(&json!({"type": "distances", "margin": 0.5}));
+        let moved = there.done(json!({"type": "joint", "name": joint, "value": value}));
+        let q = [&home["q"], &moved["q"], &home["q"]];
+        here.say(&json!({"type": "states", "q": q, "full": true, "id": 5}));
+        let answer = here.next("states");
+        assert_eq!(answer["reply_to"], 5);
+        let states = answer["states"].as_array().unwrap();
+        assert_eq!(states.len(), 3);
+        for (state, there) in states.iter().zip([&home, &moved, &home]) {
+            for (field, value) in state.as_object().unwrap() {
+                same(value, &there[field], field);
+            }
+        }
+        let still = here.done(json!({"type": "pause"}));
+        assert_eq!((&still["q"], &still["links"]), (&home["q"], &home["links"]));
+        here.say(&json!({"type": "states", "q": [home["q"]]}));
+        let bare = here.next("states");
+        assert!(bare["states"][0]["overlays"].as_object().unwrap().is_empty());
+        assert!(bare["states"][0]["distances"].is_null() && bare["reply_to"].is_null());
+    }
+}
+
+#[test]
+fn states_of_wrong_configurations_are_refused_with_their_place() {
+    let server = Server::new(&["five-bar"]);
+    let mut client = server.client();
+    let home = client.next("state")["q"].clone();
+    let short = client.complaint(&json!({"type": "states", "q": [home, [1]]}));
+    assert_eq!(short["place"], "states.q[1]");
+    let many = vec![home.clone(); 65];
+    let many = client.complaint(&json!({"type": "states", "q": many}));
+    assert!(many["message"].as_str().unwrap().contains("65 configurations"), "{many}");
+    let text = client.complaint(&json!({"type": "states", "q": [home, "q"]}));
+    assert_eq!(text["place"], "states.q[1]");
+    assert_eq!(client.done(json!({"type": "pause"}))["q"], home);
 }

@@ -1,0 +1,30 @@
+/** Files that are chosen in a dialogue or dropped on the page. */
+import { h } from "./dom";
+
+type Take = (files: File[]) => void;
+
+export function askForFiles(take: Take): void {
+  const input = h("input", { type: "file", accept: ".json,.csv", multiple: true });
+  input.addEventListener("change", () => take([...(input.files ?? [])]));
+  input.click();
+}
+
+/** While files are over the page, it is marked. */
+export function onDrop(take: Take): void {
+  const root = document.documentElement;
+  const mark = (over: boolean): void => void root.toggleAttribute("data-dropping", over);
+  addEventListener("dragover", (event) => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    mark(true);
+  });
+  addEventListener("dragleave", (event) => {
+    if (event.relatedTarget === null) mark(false);
+  });
+  addEventListener("drop", (event) => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    mark(false);
+    take([...event.dataTransfer.files]);
+  });
+}

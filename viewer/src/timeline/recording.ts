@@ -1,0 +1,99 @@
+/** States over time: those that the session sent, or those of a motion in a file. */
+import type { Scene, State } from "../protocol";
+import { Columns } from "./columns";
+
+/** About twenty minutes at 60 states a second of a small robot. */
+export const MOST = 72_000;
+
+export class Recording {
+  readonly columns: Columns;
+  /** As the server sent them: text needs a tenth of the memory of what it describes. */
+  private readonly raws: string[] = [];
+  /** Each from its first state on. */
+  private readonly scenes: { from: number; scene: Scene }[] = [];
+
+  /** `file`: the name of the file that it was read from. */
+  constructor(scene: Scene, readonly file: string | null = null) {
+    this.scenes.push({ from: 0, scene });
+    this.columns = new Columns(scene.coordinates.length);
+  }
+
+  get length(): number {
+    return this.raws.length;
+  }
+
+  get isFull(): boolean {
+    return this.raws.length >= MOST;
+  }
+
+  /** Of the last state, from the first (s). */
+  get duration(): number {
+    return this.length > 0 ? this.columns.time.at(this.length - 1) : 0;
+  }
+
+  /** The states that follow are of this scene. */
+  changeScene(scene: Scene): void {
+    if (this.scenes.at(-1)?.from === this.length) this.scenes.pop();
+    this.scenes.push({ from: this.length, scene });
+  }
+
+  /** A state as text, `time` after the first (s). */
+  take(time: number, raw: string, state = JSON.parse(raw) as State): void {
+    const { scene } = this;
+    if (this.isFull || state.q.length !== scene.coordinates.length) return;
+    this.columns.push(time, scene, state);
+    this.raws.push(raw);
+  }
+
+  /** The newest scene. */
+  get scene(): Scene {
+    return this.sceneAt(Infinity);
+  }
+
+  sceneAt(index: number): Scene {
+    const found = this.scenes.findLast(({ from }) => from <= index) ?? this.scenes[0];
+    if (!found) throw new Error("a recording has a scene");
+    return found.scene;
+  }
+
+  stateAt(index: number): State | null {
+    const raw = this.raws[index];
+    return raw === undefined ? null : (JSON.parse(raw) as State);
+  }
+
+  json(): Blob {
+    const scene = this.sceneAt(0);
+    const head = JSON.stringify({
+      model: scene.name, frame: scene.frame, task: scene.task, method: scene.method,
+      joint_names: scene.coordinates.map((coordinate) => coordinate.name),
+      units: scene.coordinates.map((coordinate) => coordinate.unit),
+      times: [...this.columns.time.view()],
+    });
+    return new Blob([head.slice(0, -1), ',"states":[\n', this.raws.join(",\n"), "\n]}\n"], { type: "application/json" });
+  }
+
+  /** One line for each state: the numbers of the head, SI and radians; an absent one stays empty. */
+  csv(): Blob {
+    const { coordinates } = this.sceneAt(0);
+    const pose = (name: string): string[] => ["x", "y", "z", "qw", "qx", "qy", "qz"].map((part) => `${name}_${part}`);
+    const head = [
+      "time", ...coordinates.map(({ name }) => name), ...coordinates.map(({ name }) => `velocity.${name}`), ...pose("tool"), ...pose("target"),
+      "position_error", "orientation_error", "smallest_over_largest", "rank", "status",
+    ];
+    const lines = this.raws.map((raw, i) => {
+      const state = JSON.parse(raw) as State;
+      return [
+        this.columns.time.at(i), ...state.q, ...coordinates.map((_, k) => state.servo.joint_velocities?.[k]),
+        ...state.tool.position, ...state.tool.quaternion,
+        ...state.target.position, ...state.target.quaternion, state.error.position, state.error.orientation,
+        state.singular?.ratio, state.singular?.rank, state.servo.status,
+      ].map(cell).join(",");
+    });
+    return new Blob([[head.map(cell).join(","), ...lines].join("\r\n"), "\r\n"], { type: "text/csv" });
+  }
+}
+
+function cell(value: string | number | null | undefined): string {
+  const text = String(value ?? "");
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}

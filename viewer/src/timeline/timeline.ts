@@ -1,0 +1,329 @@
+/** Records the session, opens motions of files, and shows a moment of them in place of the robot as it is. */
+import { h } from "../dom";
+import { download } from "../download";
+import { icon } from "../icons";
+import type { Posture, Scene, State, ToServer } from "../protocol";
+import type { Session } from "../session";
+import { Dock } from "./dock";
+import { Elsewhere } from "./elsewhere";
+import { readMotion, type Motion, type Sample } from "./motion";
+import { Player } from "./player";
+import { Plots } from "./plots";
+import { MOST, Recording } from "./recording";
+import { Trail } from "./trail";
+
+type Told = {
+  /** Another moment, or the robot as it is, is to be drawn. */
+  redraw: () => void;
+  /** A frame is wanted. */
+  wake: () => void;
+  say: (words: string, bad?: boolean) => void;
+  /** A recording goes on, is complete, or there is none. */
+  changed: (recording: boolean, states: number) => void;
+  /** What the server has to send for the overlays and panels that are open: names, and distances or not. */
+  wanted: () => { overlays: string[]; distances: boolean };
+  size: () => number;
+};
+export type Moment = { scene: Scene; state: State };
+
+/** Messages that change nothing about the robot: they are sent while a recording is shown. */
+const READS: readonly ToServer["type"][] = ["overlays", "compare", "report", "distances", "states", "drive", "seen"];
+/** Messages that do not go on from the moment shown. */
+const FRESH: readonly ToServer["type"][] = ["configuration", "reset", "play", "pause"];
+/** Between drawings of what grows (ms). */
+const PAUSE = 250;
+
+export class Timeline {
+  readonly plots: Plots;
+  readonly trail = new Trail();
+  private readonly dock: Dock;
+  private readonly player: Player;
+  private readonly elsewhere: Elsewhere;
+  private recording: Recording | null = null;
+  private records = false;
+  private began = 0;
+  private showsTrail = true;
+  /** The moment that is shown, if it is not the robot as it is. */
+  private current: (Moment & { index: number }) | null = null;
+  /** Wanted by the player, and not shown yet. */
+  private wanted: number | null = null;
+  private asking = false;
+  /** A moment of the recording is shown, or will be. */
+  private isWanted = false;
+  private later = 0;
+
+  constructor(dock: HTMLElement, private readonly session: Session, private readonly tell: Told) {
+    this.player = new Player(() => this.move(), () => this.dock.playing(this.player.playing));
+    const [json, csv, png] = [["JSON", "the recording as JSON", () => this.save("json")], ["CSV", "the recording as CSV", () => this.save("csv")], ["PNG", "the plots as PNG", () => this.picture()]] as const;
+    this.plots = new Plots((time) => {
+      this.player.pause();
+      this.player.seek(time);
+    }, ...[json, csv, png].map(([words, what, action]) => h("button", { class: "button small", type: "button", onclick: action, "aria-label": `Save ${what}`, title: `Save ${what}` }, icon("save"), words)));
+    this.dock = new Dock(dock, this.player, {
+      live: () => this.live(),
+      trail: (shown) => {
+        this.showsTrail = shown;
+        this.drawTrail();
+      },
+    });
+    this.dock.playing(false);
+    this.elsewhere = new Elsewhere(session);
+    session.on("raw", (raw) => this.take(raw));
+    session.on("scene", (scene) => this.takeScene(scene));
+    session.on("sending", (message) => this.takeOver(message));
+    this.exists(false);
+  }
+
+  /** What is shown in place of the robot as it is. */
+  get moment(): Moment | null {
+    return this.current;
+  }
+
+  get isRecording(): boolean {
+    return this.records;
+  }
+
+  owns(id: unknown): boolean {
+    return this.elsewhere.owns(id);
+  }
+
+  record(): void {
+    if (this.records) {
+      this.stop();
+      return;
+    }
+    const { scene, state } = this.session;
+    if (!scene || !state) return;
+    this.live();
+    this.records = this.session.eager = true;
+    this.began = performance.now();
+    this.replace(new Recording(scene));
+    this.recording?.take(0, JSON.stringify(state), state);
+    this.grow();
+  }
+
+  /** Shows the motion of a file. */
+  async open(file: File): Promise<void> {
+    const { scene } = this.session;
+    if (!scene) return;
+    let motion: Motion;
+    try {
+      motion = await readMotion(file, scene);
+    } catch (error) {
+      this.tell.say(error instanceof Error ? error.message : String(error), true);
+      return;
+    }
+    if (this.records) this.stop();
+    const { samples } = motion;
+    const recording = new Recording(scene, file.name);
+    const takesTarget = motion.frame === null || motion.frame === scene.frame;
+    this.live();
+    this.replace(recording);
+    try {
+      await this.elsewhere.askAll(samples.map(({ q }) => q), (i, posture) => {
+        const sample = samples[i];
+        if (!sample) return;
+        const state = stateOf(i, sample, posture, file.name, takesTarget);
+        recording.take(sample.time, JSON.stringify(state), state);
+      }, (done) => {
+        if (this.recording !== recording) return false;
+        this.grow();
+        if (this.current === null && this.wanted === null) this.player.seek(0);
+        this.tell.changed(false, done);
+        return true;
+      });
+      if (!motion.hasTimes) this.tell.say(`${file.name} has no times: it is shown with 60 samples per second.`);
+      if (!takesTarget) this.tell.say(`The motion of ${file.name} is that of ${motion.frame}; errors are of that frame, the tool and its singular values are of ${scene.frame}.`);
+    } catch (error) {
+      this.tell.say(`${file.name}: ${error instanceof Error ? error.message : String(error)}`, true);
+    }
+  }
+
+  /** The robot as it is. */
+  live(): void {
+    if (!this.leave()) return;
+    this.dock.at(this.recording?.duration ?? 0, true);
+    this.tell.redraw();
+  }
+
+  /** Overlays or panels may show something else of the same moment. */
+  refresh(): void {
+    if (this.current) this.want(this.current.index);
+  }
+
+  /** Before each drawing: shows the newest moment that is wanted. */
+  flush(): void {
+    const { wanted, recording } = this;
+    if (wanted === null || !recording || this.asking) return;
+    this.wanted = null;
+    const state = recording.stateAt(wanted);
+    if (!state) return;
+    const moment = { scene: recording.sceneAt(wanted), state, index: wanted };
+    if (this.isComplete(state)) {
+      this.show(moment);
+      return;
+    }
+    this.asking = true;
+    this.elsewhere.ask([state.q], true).then(
+      ([posture]) => this.answered(recording, { ...moment, state: completed(state, posture) }),
+      () => this.answered(recording, moment),
+    );
+  }
+
+  private answered(recording: Recording, moment: Moment & { index: number }): void {
+    this.asking = false;
+    // Somebody may have left the recording meanwhile.
+    if (recording === this.recording && this.isWanted) this.show(moment);
+    if (this.wanted !== null) this.tell.wake();
+  }
+
+  private show(moment: Moment & { index: number }): void {
+    this.current = moment;
+    this.plots.at(moment.index, this.player.time);
+    this.tell.redraw();
+  }
+
+  private move(): void {
+    if (!this.recording) return;
+    const { time } = this.player;
+    const index = this.recording.columns.indexAt(time);
+    this.dock.at(time, false);
+    if (index === this.current?.index && this.wanted === null) this.plots.at(index, time);
+    else this.want(index);
+  }
+
+  private want(index: number): void {
+    this.wanted = index;
+    this.isWanted = true;
+    this.tell.wake();
+  }
+
+  private leave(): boolean {
+    this.player.pause();
+    this.wanted = null;
+    this.isWanted = false;
+    const left = this.current !== null;
+    this.current = null;
+    return left;
+  }
+
+  /** A recorded state has what was shown when it came. */
+  private isComplete(state: State): boolean {
+    const { overlays, distances } = this.tell.wanted();
+    const have = Object.keys(state.overlays);
+    return overlays.every((name) => have.includes(name)) && (!distances || state.distances !== null);
+  }
+
+  private stop(): void {
+    this.records = this.session.eager = false;
+    this.plots.show(this.recording);
+    this.tell.changed(false, this.recording?.length ?? 0);
+  }
+
+  private take(raw: string): void {
+    const { recording } = this;
+    if (!this.records || !recording) return;
+    recording.take((performance.now() - this.began) / 1000, raw);
+    if (recording.isFull) {
+      this.stop();
+      this.tell.say(`The recording has ${MOST} states and has stopped; save it, or record again.`);
+    }
+    this.grow();
+  }
+
+  /** The recording has become longer. */
+  private grow(): void {
+    const { recording } = this;
+    if (!recording) return;
+    this.player.setEnd(recording.duration);
+    this.dock.show(recording.columns, recording.duration);
+    if (!this.isWanted) {
+      this.dock.at(recording.duration, true);
+      this.player.time = recording.duration;
+      this.plots.at(recording.length - 1, recording.duration);
+    } else {
+      this.dock.at(this.player.time, false);
+    }
+    this.plots.grow();
+    this.later ||= window.setTimeout(() => {
+      this.later = 0;
+      this.dock.paint();
+      this.drawTrail();
+    }, PAUSE);
+    if (this.records) this.tell.changed(true, recording.length);
+  }
+
+  private drawTrail(): void {
+    if (this.recording && this.showsTrail) this.trail.draw(this.recording.columns, this.tell.size());
+    else this.trail.clear();
+    this.tell.wake();
+  }
+
+  private replace(recording: Recording | null): void {
+    this.leave();
+    this.recording = recording;
+    this.player.time = 0;
+    this.exists(recording !== null);
+    this.plots.show(recording);
+    this.drawTrail();
+  }
+
+  private exists(there: boolean): void {
+    this.dock.element.hidden = !there;
+    this.plots.panel.element.hidden = !there;
+    document.documentElement.toggleAttribute("data-recording", there);
+  }
+
+  private takeScene(scene: Scene): void {
+    const { recording } = this;
+    if (!recording) return;
+    const names = (of: Scene): string => JSON.stringify([of.name, of.coordinates.map(({ name }) => name), of.links.length]);
+    if (names(scene) === names(recording.scene)) {
+      if (this.records) recording.changeScene(scene);
+      return;
+    }
+    if (this.records) this.stop();
+    this.replace(null);
+    this.tell.changed(false, 0);
+  }
+
+  /** Who moves the robot while a recording is shown goes on from the moment shown. */
+  private takeOver({ type }: ToServer): void {
+    if (!this.current || READS.includes(type)) return;
+    const { q } = this.current.state;
+    this.leave();
+    this.dock.at(this.recording?.duration ?? 0, true);
+    if (!FRESH.includes(type)) this.session.send({ type: "configuration", q });
+  }
+
+  private save(format: "json" | "csv"): void {
+    const { recording } = this;
+    if (recording) download(format === "json" ? recording.json() : recording.csv(), `${recording.scene.name}.${format}`);
+  }
+
+  private picture(): void {
+    this.plots.picture().then(
+      (blob) => download(blob, `${this.recording?.scene.name ?? "cylindroid"}-plots.png`),
+      (error: unknown) => this.tell.say(`The picture could not be saved: ${error instanceof Error ? error.message : String(error)}.`, true),
+    );
+  }
+}
+
+/** The sample of a motion as a state; without a target of its own, that is at the tool. */
+function stateOf(i: number, sample: Sample, posture: Posture, file: string, takesTarget: boolean): State {
+  const { time, error, joint_velocities, limits } = sample;
+  return {
+    type: "state", seq: i, time, ack: null, playing: false,
+    target: (takesTarget ? sample.target : null) ?? posture.tool,
+    error,
+    servo: { status: "paused", reason: null, sentence: `Sample ${i + 1} of ${file}.`, limits, pair: null, self_motion: 0, joint_velocities, twist: null },
+    ...posture,
+  };
+}
+
+/** With overlays and distances that were computed now, where the obstacles have not moved. */
+function completed(state: State, posture: Posture | undefined): State {
+  if (!posture) return state;
+  const same = JSON.stringify(posture.obstacles) === JSON.stringify(state.obstacles);
+  return { ...state, overlays: { ...posture.overlays, ...state.overlays }, distances: state.distances ?? (same ? posture.distances : null) };
+}

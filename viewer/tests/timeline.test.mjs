@@ -1,0 +1,248 @@
+/** Recordings and motions of files: played, scrubbed, plotted and left. */
+import assert from "node:assert/strict";
+import { mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { apart, browserOfFile, cylindroid, moveTarget, openFile, openPanel, picture, saved, showOverlay, state, until, untilReached } from "./lib.mjs";
+
+const { visit } = browserOfFile();
+const folder = await mkdtemp(join(tmpdir(), "cylindroid-timeline-"));
+
+/**
+ * A file of this text.
+ * @param {string} name
+ * @param {string} text
+ */
+async function file(name, text) {
+  const path = join(folder, name);
+  await writeFile(path, text);
+  return path;
+}
+
+/**
+ * The moment that is shown, null where it is the robot as it is.
+ * @param {import("playwright-core").Page} page
+ * @returns {Promise<import("../src/protocol").State | null>}
+ */
+const moment = (page) => page.evaluate(() => /** @type {any} */ (window).viewer.timeline.moment?.state ?? null);
+
+/**
+ * Waits until a moment is shown that is so.
+ * @param {import("playwright-core").Page} page
+ * @param {string} condition of `moment`
+ */
+const untilMoment = (page, condition) => until(page, `(() => { const moment = window.viewer.timeline.moment?.state ?? null; return ${condition}; })()`);
+
+/** @param {import("playwright-core").Page} page */
+const slider = (page) => page.getByLabel("Time of the recording [s]");
+
+/**
+ * Positions of all links as they are drawn.
+ * @param {import("playwright-core").Page} page
+ * @returns {Promise<number[]>}
+ */
+const drawn = (page) => page.evaluate(() => /** @type {any} */ (window).viewer.robot.links.flatMap((/** @type {any} */ { frame }) => frame.position.toArray()));
+
+/**
+ * Records while the tool goes down.
+ * @param {import("playwright-core").Page} page
+ */
+async function recordMotion(page) {
+  await page.getByRole("button", { name: "Record" }).click();
+  await untilReached(page, await moveTarget(page, "z", -0.15));
+  await page.getByRole("button", { name: /^Stop recording/ }).click();
+  return JSON.parse(await saved(page, "Save the recording as JSON"));
+}
+
+test("a recording is scrubbed by keys, drawn as it was, and left; the robot does not move", () =>
+  visit(["panda"], async (page) => {
+    const { states, times } = await recordMotion(page);
+    const end = await state(page);
+    assert.equal(times.length, states.length);
+    assert.ok(states.length > 20 && times.every((/** @type {number} */ time, /** @type {number} */ i) => i === 0 || time >= times[i - 1]));
+    await slider(page).focus();
+    await page.keyboard.press("Home");
+    await untilMoment(page, `moment?.seq === ${states[0].seq}`);
+    for (let i = 0; i < 5; i += 1) await page.keyboard.press("ArrowRight");
+    await untilMoment(page, `moment?.seq === ${states[5].seq}`);
+    const shown = await moment(page);
+    assert.deepEqual(shown?.q, states[5].q);
+    const links = states[5].links.flatMap((/** @type {any} */ link) => link.position);
+    assert.ok(apart(await drawn(page), links) < 1e-12);
+    const field = page.getByLabel("panda_joint4 as a number");
+    assert.ok(Math.abs(Number(await field.inputValue()) - states[5].q[3]) < 1e-4);
+    const legend = page.locator('[data-plot="joints"] [data-line="panda_joint4"] .number');
+    assert.equal((await legend.textContent())?.replace("−", "-"), states[5].q[3].toFixed(4));
+    await openPanel(page, "mobility");
+    await page.locator('[data-panel="mobility"] > .doubt').waitFor({ state: "visible" });
+    assert.ok(apart((await state(page)).q, end.q) < 1e-4);
+    await picture(page, "timeline");
+    await slider(page).focus();
+    await page.keyboard.press("End");
+    await untilMoment(page, `moment?.seq === ${states.at(-1).seq}`);
+    await page.getByRole("button", { name: "live" }).focus();
+    await page.keyboard.press("Enter");
+    await untilMoment(page, "moment === null");
+    assert.ok(apart(await drawn(page), end.links.flatMap((link) => link.position)) < 1e-4);
+    await page.locator('[data-panel="mobility"] > .doubt').waitFor({ state: "hidden" });
+  }));
+
+test("a recording plays to its end, in a loop, faster and slower", () =>
+  visit(["panda"], async (page) => {
+    const { states, times } = await recordMotion(page);
+    const last = states.at(-1).seq;
+    await page.getByLabel("Speed of playing back").selectOption("4 ×");
+    await page.getByRole("button", { name: "Play back" }).click();
+    await untilMoment(page, `moment?.seq > ${states[3].seq} && moment?.seq < ${last}`);
+    await untilMoment(page, `moment?.seq === ${last}`);
+    await page.getByRole("button", { name: "Play back" }).waitFor(); // it has ended by itself
+    await page.getByRole("button", { name: "Loop" }).click();
+    await page.getByRole("button", { name: "Play back" }).click();
+    await untilMoment(page, `moment?.seq < ${states[Math.floor(times.length / 2)].seq}`);
+    await page.getByRole("button", { name: "Pause playback" }).click();
+  }));
+
+test("whoever moves the robot goes on from the moment shown, and undo leads back", () =>
+  visit(["panda"], async (page) => {
+    const { states } = await recordMotion(page);
+    const end = await state(page);
+    await slider(page).focus();
+    await page.keyboard.press("Home");
+    await untilMoment(page, `moment?.seq === ${states[0].seq}`);
+    const field = page.getByLabel("panda_joint1 as a number");
+    await field.fill("0.3");
+    await field.press("Enter");
+    await until(page, "Math.abs(state.q[0] - 0.3) < 1e-9");
+    assert.equal(await moment(page), null);
+    assert.ok(apart((await state(page)).q.slice(1), states[0].q.slice(1)) < 1e-9);
+    await page.getByRole("button", { name: /^Undo/ }).click();
+    await until(page, `Math.abs(state.q[3] - ${end.q[3]}) < 1e-4 && Math.abs(state.q[0] - ${end.q[0]}) < 1e-4`);
+  }));
+
+test("overlays and distances that were not recorded are those of the moment shown", () =>
+  visit(["panda"], async (page) => {
+    const { states } = await recordMotion(page);
+    await slider(page).focus();
+    await page.keyboard.press("Home");
+    await page.locator('[data-overlay="joint-axes"]').check();
+    await openPanel(page, "distances");
+    await untilMoment(page, `moment?.seq === ${states[0].seq} && moment.overlays["joint-axes"] && moment.distances`);
+    const axes = (await moment(page))?.overlays["joint-axes"];
+    assert.ok(axes && "axes" in axes && axes.axes.length >= 7);
+  }));
+
+test("motions of move and CSV by the names of joints are opened, with what they say and what the server computes", (t) =>
+  visit(["panda"], async (page) => {
+    const csv = join(folder, "motion.csv");
+    await cylindroid("move", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6", "--out", csv);
+    await openFile(page, csv);
+    const [head = "", ...rows] = (await readFile(csv, "utf8")).trim().split("\n");
+    const names = head.split(",");
+    await page.waitForFunction((count) => /** @type {any} */ (window).viewer.timeline.recording?.length === count, rows.length);
+    const last = (rows.at(-1) ?? "").split(",").map(Number);
+    await slider(page).focus();
+    await page.keyboard.press("End");
+    await untilMoment(page, `moment?.seq === ${rows.length - 1}`);
+    const shown = await moment(page);
+    const of = (/** @type {string} */ name) => last[names.indexOf(name)] ?? NaN;
+    assert.ok(apart(shown?.tool.position ?? [], ["x", "y", "z"].map(of)) < 1e-9);
+    assert.equal(shown?.error.position, of("position_error"));
+    assert.ok(Math.abs((shown?.singular?.ratio ?? 0) - of("singular_ratio")) < 1e-9);
+    assert.deepEqual(shown?.servo.joint_velocities, names.filter((name) => name.startsWith("velocity.")).map(of));
+    t.diagnostic(`${rows.length} samples`);
+    await page.getByRole("button", { name: "Joint velocities" }).click();
+    await page.getByRole("button", { name: "Distances to limits" }).click();
+    await page.locator('[data-plot="rates"] [data-line="panda_joint2"]').waitFor();
+    await picture(page, "timeline-file");
+    const own = await file("own.csv", "time,panda_joint2\n0,0\n");
+    await openFile(page, own);
+    await page.getByText(/own\.csv, line 1: no column for panda_joint1/).waitFor();
+    const { coordinates } = await page.evaluate(() => /** @type {any} */ (window).viewer.session.scene);
+    const heads = coordinates.map((/** @type {any} */ { name }) => name).join(",");
+    const zeros = coordinates.map(() => "0").join(",");
+    for (const [name, text, told] of /** @type {const} */ ([
+      ["word.csv", `time,${heads}\n0,${zeros}\n0.1,${zeros.replace("0", "none")}\n`, /word\.csv, line 3: "none" in column panda_joint1 is not a number/],
+      ["back.csv", `time,${heads}\n1,${zeros}\n0.5,${zeros}\n`, /back\.csv, line 3: its time is before/],
+      ["short.csv", `time,${heads}\n0,1\n`, /short\.csv, line 2 has 2 cells, not/],
+      ["empty.csv", `time,${heads}\n`, /empty\.csv has no sample/],
+      ["broken.json", "{", /broken\.json is not JSON/],
+      ["other.json", '{"model": "ur5e", "joint_names": ["a"], "samples": []}', /other\.json is a motion of ur5e without panda_joint1/],
+      ["none.json", "{}", /none\.json has neither "samples"/],
+    ])) {
+      await openFile(page, await file(name, text));
+      await page.getByText(told).waitFor();
+    }
+    // What was open still is.
+    await untilMoment(page, `moment?.seq === ${rows.length - 1}`);
+  }));
+
+test("a file that is dropped is opened; a recording that was saved comes back the same", () =>
+  visit(["five-bar"], async (page) => {
+    await page.getByLabel("Task", { exact: true }).selectOption("position");
+    await until(page, 'scene.task.components.join() === "x,y"');
+    await page.getByRole("button", { name: "Record" }).click();
+    await untilReached(page, await moveTarget(page, "y", -0.4));
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    const text = await saved(page, "Save the recording as JSON");
+    const { states } = JSON.parse(text);
+    const transfer = await page.evaluateHandle((content) => {
+      const data = new DataTransfer();
+      data.items.add(new File([content], "again.json", { type: "application/json" }));
+      return data;
+    }, text);
+    for (const type of ["dragover", "drop"]) await page.dispatchEvent("canvas", type, { dataTransfer: transfer });
+    await page.waitForFunction((count) => {
+      const { recording } = /** @type {any} */ (window).viewer.timeline;
+      return recording?.file === "again.json" && recording.length === count;
+    }, states.length);
+    await slider(page).focus();
+    await page.keyboard.press("End");
+    await untilMoment(page, `moment?.seq === ${states.length - 1}`);
+    const [shown, was] = [await moment(page), states.at(-1)];
+    assert.ok(apart(shown?.q ?? [], was.q) < 1e-15);
+    assert.deepEqual(shown?.target, was.target);
+    assert.ok(apart(shown?.links.flatMap((link) => link.position) ?? [], was.links.flatMap((/** @type {any} */ link) => link.position)) < 1e-12);
+    assert.ok(apart(shown?.singular?.values ?? [], was.singular.values) < 1e-9);
+  }));
+
+test("10 000 states are scrubbed", (t) =>
+  visit(["panda"], async (page) => {
+    await showOverlay(page, "velocity-ellipsoid");
+    await page.locator('[data-overlay="velocity-ellipsoid"]').uncheck();
+    const { coordinates, home } = await page.evaluate(() => /** @type {any} */ (window).viewer.session.scene);
+    const rows = Array.from({ length: 10_000 }, (_, i) => [i / 100, ...home.map((/** @type {number} */ q, /** @type {number} */ k) => q + (k < 7 ? 0.1 * Math.sin(i / 150 + k) : 0))].join(","));
+    const path = await file("long.csv", [["time", ...coordinates.map((/** @type {any} */ { name }) => name)].join(","), ...rows].join("\n"));
+    const begin = performance.now();
+    await openFile(page, path);
+    await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.recording?.length === 10_000);
+    t.diagnostic(`opened in ${((performance.now() - begin) / 1000).toFixed(1)} s`);
+    await page.getByRole("button", { name: "Distances to limits" }).click();
+    const measured = await page.evaluate(async () => {
+      const { timeline, session } = /** @type {any} */ (window).viewer;
+      let spent = 0;
+      for (const [of, name] of [[timeline, "flush"], [timeline, "answered"], [timeline.player, "seek"], [session, "receive"]]) {
+        const work = of[name].bind(of);
+        of[name] = (/** @type {any[]} */ ...given) => {
+          const begin = performance.now();
+          work(...given);
+          spent += performance.now() - begin;
+        };
+      }
+      const work = [];
+      for (let i = 0; i < 100; i += 1) {
+        spent = 0;
+        timeline.player.seek((i * 37) % 100);
+        while (timeline.wanted !== null || timeline.asking) await new Promise((resolve) => requestAnimationFrame(resolve));
+        work.push(spent);
+      }
+      return work.sort((a, b) => a - b);
+    });
+    const at = (/** @type {number} */ share) => (measured[Math.floor(share * (measured.length - 1))] ?? NaN).toFixed(2);
+    t.diagnostic(`${at(0.5)} ms of JavaScript for a state of 10 000 (median), ${at(0.9)} ms (nine of ten), three plots`);
+    await slider(page).focus();
+    await page.keyboard.press("PageDown");
+    await page.keyboard.press("ArrowRight");
+    await untilMoment(page, "moment !== null");
+    await picture(page, "timeline-long");
+  }));
