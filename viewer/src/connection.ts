@@ -65,7 +65,7 @@ export function socketUrl(path: string): string {
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   // Of the words in the page's address those are the server's.
   const asked = new URLSearchParams(location.search);
-  for (const name of ["session", "observe"]) {
+  for (const name of ["session", "observe", "model"]) {
     const value = asked.get(name);
     if (value !== null) url.searchParams.set(name, value);
   }

@@ -1,13 +1,6 @@
-/** Files that are chosen in a dialogue or dropped on the page. */
-import { h } from "./dom";
+/** Files that are dropped on the page. */
 
 type Take = (files: File[]) => void;
-
-export function askForFiles(take: Take): void {
-  const input = h("input", { type: "file", accept: ".json,.csv", multiple: true });
-  input.addEventListener("change", () => take([...(input.files ?? [])]));
-  input.click();
-}
 
 /** While files are over the page, it is marked. */
 export function onDrop(take: Take): void {

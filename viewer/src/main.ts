@@ -12,12 +12,14 @@ import { socketUrl } from "./connection";
 import { h } from "./dom";
 import { download } from "./download";
 import { Drawings } from "./drawings";
-import { askForFiles, onDrop } from "./files";
+import { onDrop } from "./files";
+import { gltf } from "./gltf";
 import { History } from "./history";
 import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
 import { Overlays } from "./overlays/overlays";
 import { Obstacles } from "./obstacles";
+import { OpenDialog } from "./models/open_dialog";
 import { capabilityPanel } from "./panels/capability";
 import { Compare } from "./panels/compare";
 import { Distances } from "./panels/distances";
@@ -102,7 +104,13 @@ function start(): void {
   };
   const collisions = new Collisions(() => stage.invalidate());
   const distances = new Distances(session, labels, redraw, (shown) => collisions.show(shown));
-  const switches = new Switches(overlays, (shown) => robot.showShapes(shown));
+  const switches = new Switches(overlays, (shown) => robot.showShapes(shown), () => {
+    const name = session.scene?.name ?? "cylindroid";
+    gltf(name, robot.group).then(
+      (blob) => download(blob, `${name}.glb`),
+      (error: unknown) => page.toast(`The robot could not be saved: ${String(error)}`, true),
+    );
+  });
   const [pose, singular, screws] = [posePanel(), singularPanel(redraw), screwsPanel()];
   const reports = new Reports(session);
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
@@ -128,7 +136,7 @@ function start(): void {
     undo: () => history.undo(),
     redo: () => history.redo(),
     record: () => timeline.record(),
-    open: () => askForFiles((files) => open(files)),
+    open: () => void dialog.show(),
     picture: () => {
       stage.png().then(
         (blob) => download(blob, `${session.scene?.name ?? "cylindroid"}.png`),
@@ -140,10 +148,8 @@ function start(): void {
   new Role(bar.status, session);
   page.plots.append(timeline.plots.panel.element);
   stage.scene.add(timeline.trail.group);
-  const open = (files: File[]): void => {
-    for (const file of files) void timeline.open(file);
-  };
-  onDrop(open);
+  const dialog = new OpenDialog((file) => void timeline.open(file));
+  onDrop((files) => void dialog.take(files));
   distances.panel.onToggle(() => timeline.refresh());
   const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
   addEventListener("keydown", (event) => {

@@ -326,11 +326,12 @@ export async function saved(page, name, encoding = "utf8") {
 }
 
 /**
- * Opens a file by the dialogue.
+ * Opens files by the dialogue.
  * @param {Page} page
- * @param {string} path
+ * @param {string[]} paths
  */
-export async function openFile(page, path) {
-  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "Open a file" }).click()]);
-  await chooser.setFiles(path);
+export async function openFiles(page, ...paths) {
+  if (!(await page.locator("dialog").isVisible())) await page.getByRole("button", { name: "Open a file" }).click();
+  const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "Choose files" }).click()]);
+  await chooser.setFiles(paths);
 }

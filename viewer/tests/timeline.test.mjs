@@ -4,7 +4,7 @@ import { mkdtemp, readFile, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { apart, browserOfFile, cylindroid, moveTarget, openFile, openPanel, picture, saved, showOverlay, state, until, untilReached } from "./lib.mjs";
+import { apart, browserOfFile, cylindroid, moveTarget, openFiles, openPanel, picture, saved, showOverlay, state, until, untilReached } from "./lib.mjs";
 
 const { visit } = browserOfFile();
 const folder = await mkdtemp(join(tmpdir(), "cylindroid-timeline-"));
@@ -136,7 +136,7 @@ test("motions of move and CSV by the names of joints are opened, with what they 
   visit(["panda"], async (page) => {
     const csv = join(folder, "motion.csv");
     await cylindroid("move", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6", "--out", csv);
-    await openFile(page, csv);
+    await openFiles(page, csv);
     const [head = "", ...rows] = (await readFile(csv, "utf8")).trim().split("\n");
     const names = head.split(",");
     await page.waitForFunction((count) => /** @type {any} */ (window).viewer.timeline.recording?.length === count, rows.length);
@@ -156,7 +156,7 @@ test("motions of move and CSV by the names of joints are opened, with what they 
     await page.locator('[data-plot="rates"] [data-line="panda_joint2"]').waitFor();
     await picture(page, "timeline-file");
     const own = await file("own.csv", "time,panda_joint2\n0,0\n");
-    await openFile(page, own);
+    await openFiles(page, own);
     await page.getByText(/own\.csv, line 1: no column for panda_joint1/).waitFor();
     const { coordinates } = await page.evaluate(() => /** @type {any} */ (window).viewer.session.scene);
     const heads = coordinates.map((/** @type {any} */ { name }) => name).join(",");
@@ -170,7 +170,7 @@ test("motions of move and CSV by the names of joints are opened, with what they 
       ["other.json", '{"model": "ur5e", "joint_names": ["a"], "samples": []}', /other\.json is a motion of ur5e without panda_joint1/],
       ["none.json", "{}", /none\.json has neither "samples"/],
     ])) {
-      await openFile(page, await file(name, text));
+      await openFiles(page, await file(name, text));
       await page.getByText(told).waitFor();
     }
     // What was open still is.
@@ -214,7 +214,7 @@ test("10 000 states are scrubbed", (t) =>
     const rows = Array.from({ length: 10_000 }, (_, i) => [i / 100, ...home.map((/** @type {number} */ q, /** @type {number} */ k) => q + (k < 7 ? 0.1 * Math.sin(i / 150 + k) : 0))].join(","));
     const path = await file("long.csv", [["time", ...coordinates.map((/** @type {any} */ { name }) => name)].join(","), ...rows].join("\n"));
     const begin = performance.now();
-    await openFile(page, path);
+    await openFiles(page, path);
     await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.recording?.length === 10_000);
     t.diagnostic(`opened in ${((performance.now() - begin) / 1000).toFixed(1)} s`);
     await page.getByRole("button", { name: "Distances to limits" }).click();

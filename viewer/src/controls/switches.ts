@@ -1,6 +1,7 @@
 /** A switch for each overlay, with its unit and frame; and for the model's own shapes. */
 import { h, Kept } from "../dom";
 import { overlayColour, type Overlays } from "../overlays/overlays";
+import { icon } from "../icons";
 import { panel } from "../panels/panel";
 import type { Scene } from "../protocol";
 
@@ -8,9 +9,15 @@ export class Switches {
   readonly panel = panel("show", "Show", true);
   private readonly boxes = new Map<string, HTMLInputElement>();
   private readonly shapes: HTMLInputElement;
-  private readonly kept = new Kept(this.panel.body);
+  private readonly list = h("div", {});
+  private readonly kept = new Kept(this.list);
 
-  constructor(private readonly overlays: Overlays, private readonly showShapes: (shown: boolean) => void) {
+  /** `save` gives the robot out as a file. */
+  constructor(private readonly overlays: Overlays, private readonly showShapes: (shown: boolean) => void, save: () => void) {
+    this.panel.body.append(
+      this.list,
+      h("div", { class: "row" }, h("button", { class: "button small", type: "button", onclick: save, title: "Save the robot as it is drawn as binary glTF" }, icon("save"), "glTF")),
+    );
     this.shapes = h("input", { type: "checkbox", class: "switch", role: "switch", "data-overlay": "shapes" });
     this.shapes.checked = true;
     this.shapes.addEventListener("change", () => this.showShapes(this.shapes.checked));

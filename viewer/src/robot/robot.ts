@@ -27,8 +27,9 @@ export class Robot {
     for (const child of [...this.group.children]) discard(child);
     this.size = sizes(scene);
     [this.slides, this.loops, this.contacts] = [[], [], []];
-    this.links = scene.links.map((_, index) => {
+    this.links = scene.links.map(({ name }, index) => {
       const frame = new Group();
+      frame.name = name;
       const [skeleton, shapes] = [linkBody(scene, index, this.size), new Group()];
       frame.add(skeleton, shapes);
       this.group.add(frame);

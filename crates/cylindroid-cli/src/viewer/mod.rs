@@ -6,7 +6,8 @@
 //! obstacles and distances; `session` is a configuration with target and servo; `client_view` what
 //! one client wants to see of it; `measures`, `overlays`, `posture`, `elsewhere`, `compare`, `reports`,
 //! `snapshot` and `scene` describe a session; `dispatcher` executes messages; `shared_session` moves a session in
-//! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it;
+//! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it, `opened` those of further
+//! models;
 //! `socket` talks to one client; `safety` protects `server`, which listens; `embedded` is all of it
 //! inside another program, with its `drawings` and `drags`. All mathematics is in the library.
 
@@ -27,6 +28,7 @@ mod measures;
 mod messages;
 mod names;
 mod obstacle_messages;
+mod opened;
 mod overlays;
 mod posture;
 mod reaching;

@@ -55,6 +55,11 @@ impl Names {
         Some(format!("http://{}/", SocketAddr::new(host, self.address.port())))
     }
 
+    /// True if only this machine reaches the server.
+    pub(super) fn is_local(&self) -> bool {
+        self.address.ip().is_loopback()
+    }
+
     /// True for `host` or `host:port` of this server.
     fn knows(&self, authority: &str) -> bool {
         let (host, port) = match authority.rsplit_once(':') {

@@ -4,17 +4,22 @@ use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
 
-use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{Path, State};
+use axum::body::Bytes;
+use axum::extract::ws::{Message as Frame, WebSocketUpgrade};
+use axum::extract::{DefaultBodyLimit, Path, State};
 use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::serve::ListenerExt;
 use axum::{Router, middleware};
 use cylindroid::model::read_regular_file;
+use serde::Serialize;
 use tokio::net::{TcpListener, TcpStream};
 
-use super::assets::{Page, page_is_built};
+use super::assets::{Folders, Page, page_is_built};
+use super::json::text;
+use super::messages::Complaint;
+use super::opened::{self, Known, Offer, Opened, Refusal};
 use super::safety::{Guard, Names, guard};
 use super::sessions::{Asked, Sessions};
 use super::shared_session::SharedSession;
@@ -26,6 +31,8 @@ use super::start::Start;
 const LONGEST: usize = 1024 * 1024;
 /// Maximum size of a mesh or image file [bytes].
 const LARGEST_MESH: u64 = 256 << 20;
+/// Maximum size of a request that opens a model, with the line before its files [bytes].
+const LARGEST_REQUEST: usize = opened::LARGEST + (1 << 20);
 
 const NOT_BUILT: &str = "The page is not built: run `cargo xtask viewer` in the source of \
                          cylindroid, then build it again. The protocol (docs/viewer.md) is served \
@@ -43,6 +50,9 @@ pub(crate) struct Server {
 #[derive(Debug, Clone)]
 struct Shared {
     sessions: Sessions,
+    opened: Arc<Opened>,
+    /// False if other machines reach the server, or a program holds its session.
+    opens: bool,
     /// The folder of all paths: empty, or a slash and the token.
     folder: Arc<str>,
 }
@@ -74,8 +84,10 @@ impl Server {
         let listener = TcpListener::bind((host.trim_matches(['[', ']']), port)).await?;
         let address: SocketAddr = listener.local_addr()?;
         let folder = if token.is_empty() { String::new() } else { format!("/{token}") };
-        let shared = Shared { sessions: Sessions::new(start, of_program), folder: folder.into() };
-        Ok(Self { listener, names: Names::new(host, address), shared, frame_ancestors })
+        let (names, sessions) = (Names::new(host, address), Sessions::new(start, of_program));
+        let opens = names.is_local() && !sessions.are_of_program();
+        let shared = Shared { sessions, opened: Arc::default(), opens, folder: folder.into() };
+        Ok(Self { listener, names, shared, frame_ancestors })
     }
 
     /// The URL of the page.
@@ -106,6 +118,9 @@ impl Server {
         let router = Router::new()
             .route(&format!("{folder}/ws"), get(session))
             .route(&format!("{folder}/mesh/{{folder}}/{{*path}}"), get(mesh))
+            .route(&format!("{folder}/models"), get(models).post(open))
+            .route(&format!("{folder}/models/{{id}}/mesh/{{folder}}/{{*path}}"), get(opened_mesh))
+            .layer(DefaultBodyLimit::max(LARGEST_REQUEST))
             .fallback(get(page))
             .with_state(self.shared.clone());
         let guarded = Guard { names: self.names, frame_ancestors: self.frame_ancestors };
@@ -128,17 +143,83 @@ async fn session(State(shared): State<Shared>, uri: Uri, upgrade: WebSocketUpgra
         let what = "There are too many clients; close one of them.";
         return (StatusCode::SERVICE_UNAVAILABLE, what).into_response();
     };
-    upgrade.max_message_size(LONGEST).max_frame_size(LONGEST).on_upgrade(async move |socket| {
-        talk(socket, shared.sessions, asked).await;
+    let upgrade = upgrade.max_message_size(LONGEST).max_frame_size(LONGEST);
+    let sessions = match &asked.model {
+        None => Some(shared.sessions),
+        Some(id) => shared.opened.sessions(id),
+    };
+    let Some(sessions) = sessions else {
+        let id = asked.model.unwrap_or_default();
+        // A refused upgrade would tell a page nothing.
+        return upgrade.on_upgrade(async move |mut socket| {
+            let what = format!("model {id} is not open on this server");
+            let complaint = Complaint::new("model", &id, &what, "open its file again");
+            let _ = socket.send(Frame::Text(text(&complaint).into())).await;
+            drop(place);
+        });
+    };
+    upgrade.on_upgrade(async move |socket| {
+        talk(socket, sessions, asked).await;
         drop(place);
     })
+}
+
+const JSON: [(header::HeaderName, &str); 1] = [(header::CONTENT_TYPE, "application/json")];
+
+#[derive(Debug, Serialize)]
+struct ModelsJson<'a> {
+    name: &'a str,
+    catalogue: Vec<Offer>,
+    opened: Vec<Known>,
+    opens: bool,
+}
+
+async fn models(State(shared): State<Shared>) -> Response {
+    let list = move || {
+        let (opened, opens) = (shared.opened.known(), shared.opens);
+        let name = shared.sessions.start().mechanism.name();
+        text(&ModelsJson { name, catalogue: opened::offers(), opened, opens })
+    };
+    match tokio::task::spawn_blocking(list).await {
+        Ok(list) => (JSON, list).into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
+}
+
+async fn open(State(shared): State<Shared>, body: Bytes) -> Response {
+    if !shared.opens {
+        let what = "This server opens no files and no other models: other machines reach it, or a \
+                    program holds its session.";
+        return (StatusCode::FORBIDDEN, what).into_response();
+    }
+    let opened = move || shared.opened.open(&shared.sessions, &body);
+    let opened = tokio::task::spawn_blocking(opened).await;
+    let failed = |_| Err(Refusal::new("the model could not be loaded", "try another file"));
+    match opened.unwrap_or_else(failed) {
+        Ok(known) => (JSON, text(&known)).into_response(),
+        Err(refusal) => (StatusCode::UNPROCESSABLE_ENTITY, JSON, text(&refusal)).into_response(),
+    }
 }
 
 async fn mesh(
     State(shared): State<Shared>,
     Path((folder, path)): Path<(usize, String)>,
 ) -> Response {
-    let Some(file) = shared.sessions.start().folders.file(folder, &path) else {
+    mesh_in(&shared.sessions.start().folders, folder, &path).await
+}
+
+async fn opened_mesh(
+    State(shared): State<Shared>,
+    Path((id, folder, path)): Path<(String, usize, String)>,
+) -> Response {
+    match shared.opened.sessions(&id) {
+        Some(sessions) => mesh_in(&sessions.start().folders, folder, &path).await,
+        None => (StatusCode::NOT_FOUND, "There is no such model.").into_response(),
+    }
+}
+
+async fn mesh_in(folders: &Folders, folder: usize, path: &str) -> Response {
+    let Some(file) = folders.file(folder, path) else {
         return (StatusCode::NOT_FOUND, "There is no such mesh in the folders of the model.")
             .into_response();
     };

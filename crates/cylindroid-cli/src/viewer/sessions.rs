@@ -33,15 +33,18 @@ pub(super) struct Place(Arc<AtomicUsize>);
 pub(super) struct Asked {
     pub(super) session: Option<String>,
     pub(super) observes: bool,
+    /// An opened model, in place of that of the server.
+    pub(super) model: Option<String>,
 }
 
 impl Asked {
-    /// Reads `session=NAME&observe`; other words are not for the server.
+    /// Reads `session=NAME&observe&model=ID`; other words are not for the server.
     pub(super) fn of(query: &str) -> std::result::Result<Self, &'static str> {
         let mut asked = Self::default();
         for word in query.split('&') {
             match word.split_once('=').unwrap_or((word, "")) {
                 ("session", name) => asked.session = Some(checked(name)?.to_owned()),
+                ("model", id) => asked.model = Some(id.to_owned()),
                 ("observe", _) => asked.observes = true,
                 _ => {}
             }
@@ -70,8 +73,24 @@ impl Sessions {
         Self { start, named: Arc::default(), of_program, clients: Arc::default() }
     }
 
+    /// Those of another model, beside these: all clients together have their places.
+    pub(super) fn beside(&self, start: Start) -> Self {
+        let clients = Arc::clone(&self.clients);
+        Self { start: Arc::new(start), named: Arc::default(), of_program: None, clients }
+    }
+
     pub(super) fn start(&self) -> &Start {
         &self.start
+    }
+
+    /// True if a program holds a session.
+    pub(super) fn are_of_program(&self) -> bool {
+        self.of_program.is_some()
+    }
+
+    /// True if there is a session, or will be one at once.
+    pub(super) fn are_in_use(&self) -> bool {
+        Arc::strong_count(&self.start) > 1
     }
 
     /// A place for one more client, unless there are too many.
@@ -106,11 +125,13 @@ mod tests {
     #[test]
     fn addresses_name_a_session_and_may_observe() {
         let asked = |session: Option<&str>, observes| {
-            Ok(Asked { session: session.map(str::to_owned), observes })
+            Ok(Asked { session: session.map(str::to_owned), observes, model: None })
         };
         assert_eq!(Asked::of(""), asked(None, false));
         assert_eq!(Asked::of("quality=high&session=demo-1"), asked(Some("demo-1"), false));
         assert_eq!(Asked::of("session=a&observe"), asked(Some("a"), true));
+        let model = Some("3".to_owned());
+        assert_eq!(Asked::of("model=3"), Ok(Asked { model, ..Asked::default() }));
         for name in ["", "a b", "a/b", "%41", &"x".repeat(61)] {
             assert!(Asked::of(&format!("session={name}")).is_err(), "{name}");
         }

@@ -7,6 +7,7 @@ mod fuzz;
 mod load;
 mod motion;
 mod obstacles;
+mod opened;
 mod refused;
 mod served;
 mod shared;

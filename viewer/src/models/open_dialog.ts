@@ -1,0 +1,131 @@
+/** The dialogue that opens files and switches models. */
+import { fill, h, type Child } from "../dom";
+import { ACCEPTED, isMotion, modelFiles, request, type ModelFiles } from "./model_files";
+
+/** What the server has, and what it has opened. */
+type Models = { name: string; catalogue: { name: string; description: string }[]; opened: { id: string; name: string }[]; opens: boolean };
+type Refusal = { message: string; file: string | null; line: number | null; column: number | null; text: string | null; help: string };
+
+const PARAMETER = "model";
+
+/** Shows another model: that of the server, or one that it has opened. */
+function go(id: string | null): void {
+  const url = new URL(location.href);
+  url.hash = "";
+  // A session of that name is one of another model.
+  url.searchParams.delete("session");
+  if (id === null) url.searchParams.delete(PARAMETER);
+  else url.searchParams.set(PARAMETER, id);
+  location.assign(url.href);
+}
+
+export class OpenDialog {
+  private readonly problem = h("div", { class: "problem", role: "alert" });
+  private readonly choice = h("div", { class: "stack" });
+  private readonly models = h("div", {});
+  private readonly input = h("input", { type: "file", multiple: true, accept: ACCEPTED, hidden: true });
+  private readonly element = h(
+    "dialog", { class: "open", "aria-labelledby": "open-title" },
+    h("form", { method: "dialog", class: "row" }, h("h2", { id: "open-title" }, "Open"), h("button", { class: "button small", "aria-label": "Close" }, "×")),
+    h("div", { class: "row" }, h("button", { class: "button primary", type: "button", onclick: () => this.input.click() }, "Choose files"), this.input),
+    h("p", { class: "note" }, "A model: URDF, MJCF, SDF or a mechanism file (.toml), with its meshes in the same choice or all of it in a zip. A motion of the model that is shown: CSV or JSON. Files can be dropped on the page, too."),
+    this.problem, this.choice, this.models,
+  );
+
+  /** `motion` shows a motion of the model. */
+  constructor(private readonly motion: (file: File) => void) {
+    document.body.append(this.element);
+    this.input.addEventListener("change", () => {
+      void this.take([...(this.input.files ?? [])]);
+      this.input.value = "";
+    });
+  }
+
+  async show(): Promise<void> {
+    this.clear();
+    if (!this.element.open) this.element.showModal();
+    try {
+      const answer = await fetch("./models");
+      if (!answer.ok) throw new Error(await answer.text());
+      this.list((await answer.json()) as Models);
+    } catch (error) {
+      this.refuse(`The models of the server cannot be listed: ${words(error)}`);
+    }
+  }
+
+  /** Files that were chosen or dropped: motions are shown, others are a model. */
+  async take(given: File[]): Promise<void> {
+    const motions = given.filter(({ name }) => isMotion(name));
+    if (motions.length > 0 && motions.length === given.length) {
+      this.element.close();
+      for (const file of motions) this.motion(file);
+      return;
+    }
+    if (given.length === 0) return;
+    this.clear();
+    try {
+      const found = await modelFiles(given.filter(({ name }) => !isMotion(name)));
+      const [first] = found.candidates;
+      if (first !== undefined && found.candidates.length === 1) await this.open(first, found.files);
+      else this.choose(found);
+    } catch (error) {
+      this.refuse(words(error));
+    }
+  }
+
+  private list({ name, catalogue, opened, opens }: Models): void {
+    const button = (label: string, work: () => void, note: Child): HTMLElement =>
+      h("div", { class: "offer" }, h("button", { class: "button small", type: "button", onclick: work }, label), h("span", { class: "note" }, note));
+    if (!opens) this.refuse("This server opens no files and no other models: other machines reach it, or a program holds its session.");
+    fill(
+      this.models,
+      h("h3", {}, "Open on this server"),
+      button(name, () => go(null), "the model of the command"),
+      ...opened.map((model) => button(model.name, () => go(model.id), "opened")),
+      opens && h("h3", {}, "Catalogue"),
+      ...(opens ? catalogue.map((model) => button(model.name, () => void this.open(model.name, new Map()), model.description)) : []),
+    );
+  }
+
+  private choose({ candidates, files }: ModelFiles): void {
+    if (!this.element.open) void this.show();
+    fill(
+      this.choice,
+      h("h3", {}, "Which of these is the model?"),
+      ...candidates.map((path) => h("button", { class: "button small", type: "button", onclick: () => void this.open(path, files) }, path)),
+    );
+    this.choice.querySelector("button")?.focus();
+  }
+
+  private async open(path: string, files: Map<string, Uint8Array>): Promise<void> {
+    try {
+      const answer = await fetch("./models", { method: "POST", body: request(path, files) });
+      if (answer.ok) go(((await answer.json()) as { id: string }).id);
+      else if (answer.headers.get("content-type")?.includes("json")) this.refuse((await answer.json()) as Refusal);
+      else this.refuse(await answer.text());
+    } catch (error) {
+      this.refuse(`The server cannot be reached: ${words(error)}`);
+    }
+  }
+
+  private clear(): void {
+    fill(this.problem);
+    fill(this.choice);
+  }
+
+  private refuse(why: Refusal | string): void {
+    const told = typeof why === "string" ? { message: why, file: null, line: null, column: null, text: null, help: "" } : why;
+    if (!this.element.open) this.element.showModal();
+    fill(
+      this.problem,
+      told.file !== null && h("b", {}, `${told.file}, line ${told.line ?? "?"}, column ${told.column ?? "?"}`),
+      h("p", {}, told.message),
+      told.text !== null && told.text !== "" && h("code", {}, told.text),
+      told.help !== "" && h("p", { class: "note" }, told.help),
+    );
+  }
+}
+
+function words(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
