@@ -6,6 +6,7 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use cylindroid::model::read_regular_file;
 use cylindroid::{Error, Mechanism, catalogue};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
@@ -98,7 +99,13 @@ impl Refusal {
         let Error::File(place) = error else {
             return Self::new(inside(&error.to_string()), "");
         };
-        let bytes = fs::read(&place.path).unwrap_or_default();
+        // Files of the server that a model includes are not shown.
+        let is_sent = folder.is_some_and(|folder| {
+            place.path.canonicalize().is_ok_and(|path| path.starts_with(folder))
+        });
+        let bytes =
+            if is_sent { read_regular_file(&place.path, LARGEST as u64) } else { Ok(vec![]) };
+        let bytes = bytes.unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes);
         let line = text.lines().nth(place.line.saturating_sub(1)).unwrap_or_default();
         Self {
@@ -145,12 +152,10 @@ impl Opened {
             Refusal::new(format!("the files cannot be kept: {error}"), "free space on the server")
         })?;
         let file = path.join(&head.open);
-        let loaded = cylindroid::load_file(&file);
-        loaded
-            .and_then(|mechanism| {
-                self.keep(beside, mechanism, &file.to_string_lossy(), Some(folder))
-            })
-            .map_err(|error| Refusal::of(&error, Some(&path)))
+        // The folder is there until the line at fault has been read.
+        let refuse = |error: Error| Refusal::of(&error, Some(&path));
+        let mechanism = cylindroid::load_file(&file).map_err(refuse)?;
+        self.keep(beside, mechanism, &file.to_string_lossy(), Some(folder)).map_err(refuse)
     }
 
     fn keep(
