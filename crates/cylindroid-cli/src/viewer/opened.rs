@@ -70,6 +70,9 @@ struct Head {
     files: Vec<(String, usize)>,
 }
 
+/// Paths and contents.
+type Files<'a> = Vec<(PathBuf, &'a [u8])>;
+
 /// Why a model is not opened.
 #[derive(Debug, Serialize)]
 pub(super) struct Refusal {
@@ -85,13 +88,13 @@ pub(super) struct Refusal {
 }
 
 impl Refusal {
-    pub(super) fn new(message: impl Into<String>, help: &str) -> Self {
-        let message = message.into();
-        Self { message, file: None, line: None, column: None, text: None, help: help.to_owned() }
+    pub(super) fn new(message: impl Into<String>, help: &str) -> Box<Self> {
+        let (message, help) = (message.into(), help.to_owned());
+        Box::new(Self { message, file: None, line: None, column: None, text: None, help })
     }
 
     /// An error of the library; paths are those inside `folder`.
-    fn of(error: &Error, folder: Option<&Path>) -> Self {
+    fn of(error: &Error, folder: Option<&Path>) -> Box<Self> {
         let inside = |text: &str| match folder {
             Some(folder) => text.replace(&format!("{}/", folder.display()), ""),
             None => text.to_owned(),
@@ -108,14 +111,14 @@ impl Refusal {
         let bytes = bytes.unwrap_or_default();
         let text = String::from_utf8_lossy(&bytes);
         let line = text.lines().nth(place.line.saturating_sub(1)).unwrap_or_default();
-        Self {
+        Box::new(Self {
             message: inside(&place.message),
             file: Some(inside(&place.path.display().to_string())),
             line: Some(place.line),
             column: Some(place.column),
             text: Some(line.trim().chars().take(LONGEST_LINE).collect()),
             help: inside(&place.help),
-        }
+        })
     }
 }
 
@@ -136,7 +139,7 @@ impl Opened {
     }
 
     /// Opens the model of a request, beside these sessions.
-    pub(super) fn open(&self, beside: &Sessions, body: &[u8]) -> Result<Known, Refusal> {
+    pub(super) fn open(&self, beside: &Sessions, body: &[u8]) -> Result<Known, Box<Refusal>> {
         let (head, files) = read(body)?;
         if files.is_empty() {
             let names: Vec<&str> = catalogue::entries().into_iter().map(|e| e.name).collect();
@@ -201,7 +204,7 @@ pub(super) fn offers() -> Vec<Offer> {
 }
 
 /// The parts of a request; every path is a plain one below a folder.
-fn read(body: &[u8]) -> Result<(Head, Vec<(PathBuf, &[u8])>), Refusal> {
+fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
     let refuse = |message: String| Refusal::new(message, "see docs/viewer.md");
     let end = body.iter().position(|byte| *byte == b'\n').unwrap_or(body.len());
     let (head, mut rest) = (&body[..end], body.get(end + 1..).unwrap_or_default());
@@ -244,7 +247,7 @@ fn read(body: &[u8]) -> Result<(Head, Vec<(PathBuf, &[u8])>), Refusal> {
 }
 
 /// Writes the files to a folder of their own; gives its path with links resolved.
-fn unpack(files: &[(PathBuf, &[u8])]) -> io::Result<(TempDir, PathBuf)> {
+fn unpack(files: &Files<'_>) -> io::Result<(TempDir, PathBuf)> {
     let folder = TempDir::with_prefix("cylindroid-")?;
     let path = folder.path().canonicalize()?;
     for (name, bytes) in files {
