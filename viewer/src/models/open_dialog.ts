@@ -23,7 +23,7 @@ export class OpenDialog {
   private readonly problem = h("div", { class: "problem", role: "alert" });
   private readonly choice = h("div", { class: "stack" });
   private readonly models = h("div", {});
-  private readonly input = h("input", { type: "file", multiple: true, accept: ACCEPTED, hidden: true });
+  private readonly input = h("input", { type: "file", multiple: true, accept: ACCEPTED, hidden: true, "aria-label": "Files to open" });
   private readonly element = h(
     "dialog", { class: "open", "aria-labelledby": "open-title" },
     h("form", { method: "dialog", class: "row" }, h("h2", { id: "open-title" }, "Open"), h("button", { class: "button small", "aria-label": "Close" }, "×")),
