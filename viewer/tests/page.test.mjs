@@ -151,13 +151,13 @@ async function drawnColours(page) {
 }
 
 test("the robot is saved as glTF as it is drawn, y upwards", () =>
-  visit(["five-bar"], async (page) => {
-    await untilReached(page, await moveTarget(page, "y", -0.1));
+  visit(["panda"], async (page) => {
+    await untilReached(page, await moveTarget(page, "z", -0.05));
     const file = Buffer.from(await saved(page, "glTF", "latin1"), "latin1");
     assert.equal(file.toString("latin1", 0, 4), "glTF");
     const { nodes, scenes } = JSON.parse(file.toString("utf8", 20, 20 + file.readUInt32LE(12)));
     const root = nodes[scenes[0].nodes[0]];
-    assert.equal(root.name, "five-bar");
+    assert.equal(root.name, "panda");
     assert.ok(apart(root.rotation, [-Math.SQRT1_2, 0, 0, Math.SQRT1_2]) < 1e-6);
     const links = await page.evaluate(() => /** @type {any} */ (window).viewer.robot.links.map((/** @type {any} */ { frame }) => [frame.name, frame.position.toArray()]));
     for (const [name, position] of links) {
