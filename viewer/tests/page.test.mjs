@@ -158,7 +158,7 @@ test("the robot is saved as glTF as it is drawn, y upwards", () =>
     const { nodes, scenes } = JSON.parse(file.toString("utf8", 20, 20 + file.readUInt32LE(12)));
     const root = nodes[scenes[0].nodes[0]];
     assert.equal(root.name, "panda");
-    assert.ok(apart(root.rotation, [-Math.SQRT1_2, 0, 0, Math.SQRT1_2]) < 1e-6);
+    assert.ok(apart(root.matrix.slice(0, 12), [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0]) < 1e-6);
     const links = await page.evaluate(() => /** @type {any} */ (window).viewer.robot.links.map((/** @type {any} */ { frame }) => [frame.name, frame.position.toArray()]));
     for (const [name, position] of links) {
       const node = nodes.find((/** @type {any} */ one) => one.name === name);
