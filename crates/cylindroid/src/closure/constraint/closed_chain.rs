@@ -21,7 +21,7 @@ use std::ops::Range;
 
 use super::constraint_rows::{constraint_rows, for_each_rate, rate_unit};
 use super::loop_closure_error::LoopClosureError;
-use super::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
+use super::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units, check_size};
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
@@ -63,7 +63,7 @@ impl ClosedChain {
     ///
     /// # Errors
     /// A frame of another mechanism, a length that is not positive, an actuated loop joint of
-    /// several coordinates.
+    /// several coordinates; more than 2000 columns, or 12 000 rows.
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
         let reference = reference.unwrap_or_else(|| mechanism.reference());
@@ -72,6 +72,7 @@ impl ClosedChain {
         let columns = Columns::of(mechanism, &loops);
         let components = mechanism.dimension().components();
         let (constraints, d) = (rows.len(), components.len());
+        check_size(constraints + d, columns.places.len() + d)?;
         let mut blocks = ConstraintBlocks {
             actuated: Matrix::zeros(constraints + d, columns.actuated.len()),
             passive: Matrix::zeros(constraints + d, columns.passive.len()),

@@ -7,7 +7,7 @@
 //!          D_c multiplies columns of lengths by it: M' has no unit
 //! Frame    any: u and its wrench are taken at one point in one frame, each row in a frame of its
 //!          own
-//! Valid    any sizes, including zero. Several objects: the columns -G^T of those that are not the
+//! Valid    any sizes, including zero, up to 2000 columns and 12 000 rows. Several objects: the columns -G^T of those that are not the
 //!          reference belong to `passive`
 //! Why so   equilibrating rows and columns would need no length, but it amplifies a row that is
 //!          zero up to rounding until it counts
@@ -97,9 +97,12 @@ impl Constraint {
     /// characteristic length 1 m.
     ///
     /// # Errors
-    /// Blocks with different numbers of rows; NaN or infinity.
+    /// Blocks with different numbers of rows; NaN or infinity; more than 2000 columns, or 12 000
+    /// rows.
     pub fn new(blocks: ConstraintBlocks) -> Result<Self> {
         let t = blocks.grasp.cols();
+        let n = blocks.actuated.cols() + blocks.passive.cols() + blocks.grasp.rows();
+        check_size(t, n)?;
         for (name, block) in
             [("actuated Jacobian", &blocks.actuated), ("passive Jacobian", &blocks.passive)]
         {
@@ -115,7 +118,6 @@ impl Constraint {
         check_finite("actuated Jacobian", &blocks.actuated)?;
         check_finite("passive Jacobian", &blocks.passive)?;
         check_finite("grasp matrix", &blocks.grasp)?;
-        let n = blocks.actuated.cols() + blocks.passive.cols() + blocks.grasp.rows();
         let (row_scale, column_scale) = (vec![1.0; t], vec![1.0; n]);
         Ok(Self { blocks, length: 1.0, row_scale, column_scale, vectors: Vec::new() })
     }
@@ -198,7 +200,7 @@ impl Constraint {
     /// ```
     ///
     /// # Errors
-    /// NaN or infinity.
+    /// NaN or infinity; more than 2000 columns.
     pub fn serial(jacobian: &Matrix) -> Result<Self> {
         Self::new(ConstraintBlocks {
             actuated: jacobian.clone(),
@@ -300,6 +302,37 @@ impl Constraint {
     pub(crate) fn column_scale(&self) -> &[f64] {
         &self.column_scale
     }
+}
+
+/// The most columns of a constraint: joints, further objects and the reference. Bases of its motions
+/// are dense, 32 MB each at this size, and their decompositions take minutes.
+const MOST_COLUMNS: usize = 2000;
+
+/// The most rows: six for each of as many joints.
+const MOST_ROWS: usize = 6 * MOST_COLUMNS;
+
+/// Returns an error for a constraint whose dense matrices would be too large.
+pub(crate) fn check_size(rows: usize, columns: usize) -> Result<()> {
+    for (size, most, what) in [(columns, MOST_COLUMNS, "columns"), (rows, MOST_ROWS, "rows")] {
+        if size > most {
+            return Err(Error::InvalidOption {
+                option: "constraint of the mechanism",
+                value: format!("{size} {what}"),
+                reason: format!(
+                    "at most {most} are analysed, in dense matrices; analyse a part of the \
+                     mechanism (a group of an SRDF, or the others as fixed joints), or the \
+                     Jacobians of frames, which have no such limit"
+                ),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The same for a single matrix, which may have many rows and few columns.
+pub(crate) fn check_entries(rows: usize, columns: usize) -> Result<()> {
+    let most = MOST_ROWS * MOST_COLUMNS;
+    if rows.saturating_mul(columns) > most { check_size(rows, columns) } else { Ok(()) }
 }
 
 /// Returns an error for the first entry that is NaN or infinite.

@@ -147,7 +147,7 @@ impl FiniteMobility {
     /// ```
     ///
     /// # Errors
-    /// A length that is not positive and finite.
+    /// A length that is not positive and finite; more than 2000 coordinates.
     pub fn of(state: &State, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
         let length = length.unwrap_or_else(|| mechanism.reach());

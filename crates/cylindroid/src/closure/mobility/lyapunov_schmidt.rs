@@ -14,6 +14,7 @@
 //! Source   Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
+use crate::closure::constraint::velocity_constraint::check_size;
 use crate::closure::position::coordinates::column_scale;
 use crate::closure::position::initial_guesses::by_name;
 use crate::closure::position::loop_closure::LoopClosure;
@@ -68,6 +69,7 @@ impl<'a> LyapunovSchmidt<'a> {
         threshold: f64,
     ) -> Result<Self> {
         let free: Vec<usize> = (0..mechanism.n()).collect();
+        check_size(0, free.len())?;
         let start = LoopClosure::at(mechanism, q, &free, length)?;
         let rows = ColumnSpace::cut_of(start.jacobian.transpose(), Threshold::Relative(threshold));
         let (kernel, complement) = (rows.complement(), rows.basis());

@@ -9,6 +9,7 @@
 use super::coordinates::column_scale;
 use crate::closure::constraint::constraint_rows::{ConstraintRow, constraint_rows, for_each_rate};
 use crate::closure::constraint::loop_closure_error::LoopClosureError;
+use crate::closure::constraint::velocity_constraint::check_entries;
 use crate::error::Result;
 use crate::linalg::{Matrix, norm};
 use crate::model::Mechanism;
@@ -36,6 +37,7 @@ impl LoopClosure {
         let (all, _, closure_error) = constraint_rows(&state)?;
         let rows: Vec<ConstraintRow> =
             all.into_iter().filter(|row| row.rate_of.is_none()).collect();
+        check_entries(rows.len(), free.len())?;
         let residuals: Vec<f64> = rows.iter().map(|row| row.scaled_residual(length)).collect();
         let mut columns = vec![None; mechanism.n()];
         for (j, &i) in free.iter().enumerate() {

@@ -1,9 +1,12 @@
 //! Mechanisms with many more joints than constraints: the compressed analysis is the plain one.
 
-use cylindroid::closure::{ClosedChain, Diagnosis, Mobility, MotionSpace, Subspace};
+use cylindroid::closure::{
+    ClosedChain, Constraint, ConstraintBlocks, Diagnosis, FiniteMobility, Mobility, MotionSpace,
+    Subspace,
+};
 use cylindroid::model::{JointKind, JointSpec, LoopJointSpec};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
-use cylindroid::{Matrix, Mechanism};
+use cylindroid::{Error, Matrix, Mechanism, ReferenceFrame};
 
 use crate::support::Random;
 
@@ -118,4 +121,42 @@ fn a_thousand_joints_have_a_verdict() {
     assert_eq!((found.counts.zero_torque, found.generic.counts.zero_torque), (2, 0));
     assert_eq!(found.blocked.len(), 2);
     assert!(found.redundant.len() > 900, "{}", found.redundant.len());
+}
+
+/// Dense matrices of long chains are refused before they are made; Jacobians are not.
+#[test]
+fn more_joints_than_are_analysed() {
+    for n in [1994, 1995] {
+        let m = chain(n, true, false, true);
+        let state = m.state(m.home()).unwrap();
+        let fits = n + 6 <= 2000;
+        let says = |error: Error| {
+            let text = error.to_string();
+            assert!(text.contains("2001 columns cannot be used: at most 2000"), "{text}");
+        };
+        match ClosedChain::of(&state, None, None) {
+            Ok(found) => assert_eq!((fits, found.actuated.len() + found.passive.len()), (true, n)),
+            Err(error) => says(error),
+        }
+        assert_eq!(ClosedChain::of(&state, None, None).is_ok(), fits);
+        let wide = ConstraintBlocks {
+            actuated: Matrix::zeros(1, n),
+            passive: Matrix::zeros(1, 0),
+            grasp: Matrix::zeros(6, 1),
+        };
+        match Constraint::new(wide) {
+            Ok(_) => assert!(fits),
+            Err(error) => says(error),
+        }
+        let jacobian = state.jacobian(m.tool(), ReferenceFrame::World);
+        assert_eq!(jacobian.cols(), n);
+    }
+    let m = chain(2001, false, false, false);
+    let state = m.state(m.home()).unwrap();
+    for error in
+        [FiniteMobility::of(&state, None).map(drop), Diagnosis::of(&state, None, None).map(drop)]
+    {
+        let text = error.unwrap_err().to_string();
+        assert!(text.contains("at most 2000") && text.contains("fixed joints"), "{text}");
+    }
 }
