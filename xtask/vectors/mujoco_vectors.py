@@ -41,25 +41,37 @@ def bare(path):
     return ET.tostring(root, encoding="unicode")
 
 
+def of_tendon(model, tendon):
+    """Places in qpos and coefficients of the joints of a tendon, of a spatial one none."""
+    start = model.tendon_adr[tendon]
+    places = range(start, start + model.tendon_num[tendon])
+    if any(model.wrap_type[k] != mujoco.mjtWrap.mjWRAP_JOINT for k in places):
+        return []
+    return [(model.jnt_qposadr[model.wrap_objid[k]], model.wrap_prm[k]) for k in places]
+
+
 def couple(model, qpos):
-    """Joints that equality constraints tie together linearly."""
+    """Joints that active equality constraints tie together linearly."""
     for _ in range(model.neq):
         for i in range(model.neq):
+            if not model.eq_active0[i]:
+                continue
+            c, (first, second) = model.eq_data[i], (model.eq_obj1id[i], model.eq_obj2id[i])
+            if second >= 0 and np.any(c[2:5] != 0):
+                continue
             if model.eq_type[i] == mujoco.mjtEq.mjEQ_TENDON:
-                # A tendon of constant length over two joints: the second one follows.
-                start = model.tendon_adr[model.eq_obj1id[i]]
-                a, b = (model.jnt_qposadr[model.wrap_objid[start + k]] for k in (0, 1))
-                ca, cb = model.wrap_prm[start], model.wrap_prm[start + 1]
-                turn = model.eq_data[i][0] - ca * (qpos[a] - model.qpos0[a])
-                qpos[b] = model.qpos0[b] + turn / cb
-                continue
-            if model.eq_type[i] != mujoco.mjtEq.mjEQ_JOINT or model.eq_obj2id[i] < 0:
-                continue
-            c = model.eq_data[i]
-            if np.any(c[2:5] != 0):
-                continue
-            a, b = (model.jnt_qposadr[j] for j in (model.eq_obj1id[i], model.eq_obj2id[i]))
-            qpos[a] = model.qpos0[a] + c[0] + c[1] * (qpos[b] - model.qpos0[b])
+                # The last joint follows the others.
+                terms = of_tendon(model, first)
+                if second >= 0:
+                    terms += [(joint, -c[1] * b) for joint, b in of_tendon(model, second)]
+                if len(terms) < 2:
+                    continue
+                (last, own), rest = terms[-1], terms[:-1]
+                turn = c[0] - sum(a * (qpos[j] - model.qpos0[j]) for j, a in rest)
+                qpos[last] = model.qpos0[last] + turn / own
+            elif model.eq_type[i] == mujoco.mjtEq.mjEQ_JOINT and second >= 0:
+                a, b = (model.jnt_qposadr[j] for j in (first, second))
+                qpos[a] = model.qpos0[a] + c[0] + c[1] * (qpos[b] - model.qpos0[b])
 
 
 def of_joints(model, qpos):

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cylindroid::model::{Geometry, JointKind, Visual, formats};
+use cylindroid::model::{Geometry, Joint, JointKind, Visual, formats};
 use cylindroid::spatial::Quaternion;
 use cylindroid::{Mechanism, Pose, Result, Vec3};
 use serde_json::Value;
@@ -13,6 +13,7 @@ use crate::{pointed_at, refused, report};
 
 const ZOO: &str = include_str!("../data/zoo.xml");
 pub(crate) const LOOPS: &str = include_str!("../data/loops.xml");
+pub(crate) const TENDONS: &str = include_str!("../data/tendons.xml");
 
 pub(crate) fn read_mjcf(text: &str) -> Result<Mechanism> {
     formats::mjcf::parse(text, Path::new("robots/test.xml"))
@@ -56,11 +57,16 @@ pub(crate) fn vectors(name: &str) -> Value {
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
+/// The joints of the file: one that follows several is read as several, of which the first has its
+/// name.
+pub(crate) fn moving(m: &Mechanism) -> impl Iterator<Item = &Joint> {
+    m.joints().iter().filter(|j| j.kind.dof() > 0 && !j.name.contains('+'))
+}
+
 /// Our `q` of MuJoCo's qpos, joint by joint.
 pub(crate) fn coordinates(m: &Mechanism, qpos: &Value) -> Vec<f64> {
     let mut q = vec![0.0; m.n()];
-    let moving = m.joints().iter().filter(|j| j.kind.dof() > 0);
-    for (joint, given) in moving.zip(qpos.as_array().unwrap()) {
+    for (joint, given) in moving(m).zip(qpos.as_array().unwrap()) {
         if joint.mimic.is_some() {
             continue;
         }
@@ -105,6 +111,7 @@ pub(crate) fn against_mujoco(name: &str, m: &Mechanism) {
 fn poses_are_those_of_mujoco() {
     against_mujoco("zoo", &read(ZOO));
     against_mujoco("loops", &read(LOOPS));
+    against_mujoco("tendons", &read(TENDONS));
 }
 
 #[test]
@@ -375,31 +382,6 @@ fn what_is_broken_is_pointed_at() {
     check("<mujoco><compiler eulerseq='xy'/></mujoco>", "xy", "three letters");
     let motor = body("").replace("</mujoco>", "<actuator><motor joint='k'/></actuator></mujoco>");
     check(&motor, "k", "no joint named 'k'");
-}
-
-#[test]
-fn couplings_that_cannot_be_followed_are_noted() {
-    let couple = |equality: &str| {
-        let bodies = "<body name='a'><joint name='i'/></body><body name='b'><joint name='j'/></body>\
-                      <body name='c'><joint name='k' type='ball'/></body>";
-        let tendons = "<tendon><fixed name='t'><joint joint='i' coef='1'/><joint joint='j' coef='2'/></fixed>\
-                       <fixed name='u'><joint joint='i' coef='1'/></fixed></tendon>";
-        let equality = format!("{tendons}<equality>{equality}</equality></mujoco>");
-        read(&world(bodies).replace("</mujoco>", &equality))
-    };
-    for (equality, says) in [
-        ("<joint joint1='i'/>", "without joint2"),
-        ("<joint joint1='i' joint2='k'/>", "one coordinate"),
-        ("<joint joint1='i' joint2='i'/>", "follow one another"),
-        ("<joint joint1='i' joint2='j'/><joint joint1='j' joint2='i'/>", "follow one another"),
-        ("<joint joint1='i' joint2='j'/><joint joint1='i' joint2='j'/>", "follows another one"),
-        ("<flex flex='f'/>", "<flex> in <equality>"),
-        ("<tendon tendon1='t'/><tendon tendon1='t'/>", "follows another one"),
-        ("<tendon tendon1='u'/>", "only a fixed tendon over two joints"),
-    ] {
-        let m = couple(equality);
-        assert!(report(&m).contains(says), "{equality}: {}", report(&m));
-    }
 }
 
 /// Numbers of MuJoCo 4.0.

@@ -6,8 +6,10 @@ use cylindroid::linalg::{ColumnSpace, Matrix, Threshold};
 use cylindroid::model::{Joint, JointKind};
 use cylindroid::{Mechanism, State};
 
-use crate::mjcf::{LOOPS, coordinates, numbers, read_mjcf, robosuite, vectors};
-use crate::motions_of;
+use crate::mjcf::{
+    LOOPS, TENDONS, coordinates, moving, numbers, read, read_mjcf, robosuite, vectors, world,
+};
+use crate::{motions_of, report};
 
 /// MuJoCo closes its loops to 1e-13 before it writes them.
 const ANGLE: f64 = 1e-13;
@@ -28,12 +30,17 @@ fn leader(m: &Mechanism, joint: &Joint) -> (usize, f64) {
 /// velocity of a free body in those of the world there and of the body here.
 fn qvel_from_rates(state: &State) -> Matrix {
     let m = state.mechanism();
-    let moving = || m.joints().iter().filter(|j| j.kind.dof() > 0);
-    let nv = moving().map(|j| j.kind.dof()).sum();
+    let nv = moving(m).map(|j| j.kind.dof()).sum();
     let mut map = Matrix::zeros(nv, m.n());
     let mut row = 0;
-    for joint in moving() {
+    for joint in m.joints().iter().filter(|j| j.kind.dof() > 0) {
         let c = joint.coordinates.start;
+        if joint.name.contains('+') {
+            // Moves with the joint before it, and follows another one.
+            let (leader, ratio) = leader(m, joint);
+            map[(row - 1, leader)] += ratio;
+            continue;
+        }
         if joint.kind.dof() == 1 {
             let (leader, ratio) = leader(m, joint);
             map[(row, leader)] = ratio;
@@ -60,8 +67,7 @@ fn against_mujoco(name: &str, m: &Mechanism, expected_dof: usize) {
     let vectors = vectors(name);
     let joints: Vec<&str> =
         vectors["joints"].as_array().unwrap().iter().map(|j| j.as_str().unwrap()).collect();
-    let own: Vec<&str> =
-        m.joints().iter().filter(|j| j.kind.dof() > 0).map(|j| j.name.as_str()).collect();
+    let own: Vec<&str> = moving(m).map(|j| j.name.as_str()).collect();
     assert_eq!(joints, own);
     let cases = vectors["closed"].as_array().unwrap();
     assert_eq!(cases.len(), 3, "{name}");
@@ -103,6 +109,63 @@ fn against_mujoco(name: &str, m: &Mechanism, expected_dof: usize) {
 #[test]
 fn motions_are_those_of_mujoco() {
     against_mujoco("loops", &read_mjcf(LOOPS).unwrap(), 12);
+}
+
+/// Fixed tendons over two and three joints, and two tendons that pull one another.
+#[test]
+fn tendons_over_several_joints_are_those_of_mujoco() {
+    let m = read_mjcf(TENDONS).unwrap();
+    against_mujoco("tendons", &m, 6);
+    let names = |joints: &mut dyn Iterator<Item = &Joint>| -> Vec<String> {
+        joints.map(|j| j.name.clone()).collect()
+    };
+    // Joints without motors follow.
+    let mut following = m.joints().iter().filter(|j| j.mimic.is_some());
+    assert_eq!(names(&mut following), ["middle", "middle+last", "tilt", "tilt+drum", "right"]);
+    assert_eq!(m.actuated().count(), 2);
+}
+
+#[test]
+fn couplings_that_cannot_be_followed_are_noted() {
+    let couple = |equality: &str| {
+        let bodies = "<body name='a'><joint name='i'/></body><body name='b'><joint name='j'/></body>\
+                      <body name='c'><joint name='k' type='ball'/></body>\
+                      <body name='d'><joint name='l' range='-1 1' armature='2'/></body>";
+        let joints = |names: &[&str]| -> String {
+            names.iter().map(|name| format!("<joint joint='{name}' coef='2'/>")).collect()
+        };
+        let tendon =
+            |name: &str, own: &[&str]| format!("<fixed name='{name}'>{}</fixed>", joints(own));
+        let tendons = format!(
+            "<tendon>{}{}{}{}</tendon>",
+            tendon("t", &["i", "j"]),
+            tendon("u", &["i"]),
+            tendon("v", &["i", "j", "k"]),
+            tendon("w", &["i", "j", "l"])
+        );
+        let equality = format!("{tendons}<equality>{equality}</equality></mujoco>");
+        read(&world(bodies).replace("</mujoco>", &equality))
+    };
+    for (equality, says) in [
+        ("<joint joint1='i'/>", "without joint2"),
+        ("<joint joint1='i' joint2='k'/>", "one coordinate"),
+        ("<joint joint1='i' joint2='i'/>", "follow one another"),
+        ("<joint joint1='i' joint2='j'/><joint joint1='j' joint2='i'/>", "follow one another"),
+        ("<joint joint1='i' joint2='j'/><joint joint1='i' joint2='j'/>", "follows another one"),
+        ("<flex flex='f'/>", "<flex> in <equality>"),
+        ("<tendon tendon1='t'/><tendon tendon1='t'/>", "follows another one"),
+        ("<tendon tendon1='u'/>", "only a fixed tendon over two joints"),
+        ("<tendon tendon1='t' tendon2='u' polycoef='0 1 1 0 0'/>", "only linear couplings"),
+        ("<tendon tendon1='w' tendon2='w'/>", "only a fixed tendon over two joints"),
+        ("<tendon tendon1='v'/>", "only joints of one coordinate"),
+        ("<tendon tendon1='w'/><tendon tendon1='w'/>", "or is followed already"),
+        ("<tendon tendon1='w'/><joint joint1='l' joint2='j'/>", "a joint that follows several"),
+        ("<joint joint1='j' joint2='i'/><tendon tendon1='w'/>", "range (l)"),
+        ("<joint joint1='j' joint2='i'/><tendon tendon1='w'/>", "armature (l)"),
+    ] {
+        let m = couple(equality);
+        assert!(report(&m).contains(says), "{equality}: {}", report(&m));
+    }
 }
 
 /// All files of robosuite with equality constraints: loops, joints and tendons that tie joints.

@@ -46,8 +46,15 @@ impl<'d> Mjcf<'d> {
                 self.actuator(node)?;
             }
         }
-        // A motor at a mimic joint actuates the joint that it follows.
+        // A motor at a mimic joint actuates the joint that it follows, if it follows one.
         for i in 0..self.joints.len() {
+            let name = &self.joints[i].name;
+            if self.joints[i].actuated && self.sums.contains_key(name) {
+                let root = self.files.main.root_element();
+                let why = "it actuates none of them alone; they count as passive";
+                self.reader.note(root, "motor at a joint that follows several", why, name);
+                self.joints[i].actuated = false;
+            }
             let mut at = i;
             for _ in 0..self.joints.len() {
                 let Some(mimic) = &self.joints[at].mimic else { break };

@@ -69,6 +69,7 @@ impl<'d> Mjcf<'d> {
             links: self.links,
             joints: self.joints,
             loops: self.loops,
+            sums: self.sums,
             disabled_collisions: self.disabled_collisions,
             sites: self.sites,
             starts: self.starts,
@@ -134,15 +135,18 @@ impl<'d> Mjcf<'d> {
                     own.parent_from_joint = place * own.parent_from_joint;
                 }
             }
-            let leader = own.mimic.as_mut();
-            let is_led = leader.is_some_and(|mimic| {
-                let inside = part.joints[tree.joints.clone()].iter().any(|j| j.name == mimic.joint);
+            let mut others = part.sums.get(&joint.name).cloned().unwrap_or_default();
+            let mut is_led = false;
+            for mimic in own.mimic.iter_mut().chain(&mut others) {
+                let joints = &part.joints[tree.joints.clone()];
+                is_led |= !joints.iter().any(|j| j.name == mimic.joint);
                 mimic.joint = name(&mimic.joint);
-                !inside
-            });
+            }
             if is_led {
                 own.mimic = None;
                 self.note_left_out(node);
+            } else if !others.is_empty() {
+                self.sums.insert(own.name.clone(), others);
             }
             self.has_attached_actuators |= own.actuated;
             for (_, q) in part.starts.iter().filter(|s| s.0 == joint.name) {

@@ -3,7 +3,7 @@
 //! Formula  connect: a spherical joint at `anchor` of body1 (or of site1 at site2);
 //!          weld: a fixed joint, body1_from_body2 = relpose, by default the pose in the file;
 //!          joint: q1 = ref1 + c0 + c1 (q2 - ref2), higher coefficients are ignored;
-//!          tendon, fixed, of two joints: a1 (q1 - ref1) + a2 (q2 - ref2) = c0
+//!          tendon: see `tendon.rs`
 //! Why so   a coupled joint is a mimic joint: it needs no loop, and its column is added to that of
 //!          the joint that it follows
 //! Source   mujoco.readthedocs.io, XML reference, equality
@@ -134,7 +134,7 @@ impl<'d> Mjcf<'d> {
     }
 
     /// The position of a joint of one coordinate at qpos0.
-    fn reference(&self, joint: usize) -> f64 {
+    pub(super) fn reference(&self, joint: usize) -> f64 {
         let name = &self.joints[joint].name;
         let start = self.starts.iter().find(|s| s.0 == *name);
         start.and_then(|s| s.1.first().copied()).unwrap_or(0.0)
@@ -162,51 +162,9 @@ impl<'d> Mjcf<'d> {
         Ok(())
     }
 
-    /// A tendon of constant length over two joints couples them.
-    fn couple_by_tendon(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
-        let tendon_name = self.reader.required(node, "tendon1")?.trim();
-        let tendons = self.files.section("tendon");
-        let Some(tendon) = tendons.iter().find(|t| t.attribute("name") == Some(tendon_name)) else {
-            let known = tendons.iter().filter_map(|t| t.attribute("name"));
-            let unknown = Error::unknown("tendon", tendon_name, known);
-            return Err(self.reader.refuse(node, "tendon1", unknown.to_string()));
-        };
-        self.reader.unread_attributes(*tendon, &["name"]);
-        let mut ends = Vec::new();
-        for joint in self.files.children(*tendon).into_iter().filter(|n| n.has_tag_name("joint")) {
-            self.reader.unread_attributes(joint, &["joint", "coef"]);
-            let coefficient = Element::bare(joint).number(&self.reader, "coef")?.unwrap_or(0.0);
-            ends.push((self.joint_named(joint, "joint")?, coefficient));
-        }
-        let constant = Element::bare(node).list(&self.reader, "polycoef")?;
-        let constant = constant.and_then(|c| c.first().copied()).unwrap_or(0.0);
-        let why = match ends[..] {
-            [(first, a), (second, b)]
-                if tendon.has_tag_name("fixed")
-                    && !node.has_attribute("tendon2")
-                    && a * b != 0.0 =>
-            {
-                self.tied.push(tendon_name.to_owned());
-                // The second joint follows the first; if it cannot, the first follows the second.
-                let second_follows = self.tie(second, first, -a / b, constant / b);
-                second_follows
-                    .and_then(|why| self.tie(first, second, -b / a, constant / a).and(Some(why)))
-            }
-            [_, _, _, ..] => Some(
-                "only a fixed tendon over two joints ties them together here: a joint follows one \
-                 other joint, not a sum of several",
-            ),
-            _ => Some("only a fixed tendon over two joints ties them together here"),
-        };
-        if let Some(why) = why {
-            self.reader.note(node, "<tendon> in <equality>", why, name);
-        }
-        Ok(())
-    }
-
     /// Makes a joint follow another, `q - ref = constant + slope (q' - ref')`; otherwise returns
     /// the reason.
-    fn tie(
+    pub(super) fn tie(
         &mut self,
         follower: usize,
         leader: usize,
@@ -218,6 +176,9 @@ impl<'d> Mjcf<'d> {
         }
         if self.joints[follower].mimic.is_some() {
             return Some("its first joint follows another one already");
+        }
+        if self.sums.contains_key(&self.joints[leader].name) {
+            return Some("it would follow a joint that follows several");
         }
         if self.follows(leader, follower) {
             return Some("the two joints would follow one another");

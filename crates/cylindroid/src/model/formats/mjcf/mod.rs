@@ -26,6 +26,7 @@ mod inertia;
 mod mesh_inertia;
 mod part;
 mod replicate;
+mod tendon;
 mod unique_name;
 
 use std::cell::Cell;
@@ -48,7 +49,7 @@ use super::span::Source;
 use super::xml::{self, Reader};
 use super::xml_limits;
 use crate::error::{Error, Result};
-use crate::model::{JointSpec, Link, LoopJointSpec, Mechanism};
+use crate::model::{JointSpec, Link, LoopJointSpec, Mechanism, Mimic};
 use crate::spatial::Pose;
 
 /// The model while it is read.
@@ -67,6 +68,8 @@ struct Mjcf<'d> {
     sites: Vec<(String, String, Pose)>,
     /// Home positions of joints; later ones take precedence.
     starts: Vec<(String, Vec<f64>)>,
+    /// What else a joint follows that follows several, by its name.
+    sums: BTreeMap<String, Vec<Mimic>>,
     /// Tendons that equality constraints turn into couplings.
     tied: Vec<String>,
     /// Poses of the bodies at qpos0.
@@ -172,6 +175,7 @@ fn read<'d>(
         disabled_collisions: Vec::new(),
         sites: Vec::new(),
         starts: Vec::new(),
+        sums: BTreeMap::new(),
         tied: Vec::new(),
         world: BTreeMap::new(),
         link_names: BTreeSet::new(),
@@ -243,11 +247,13 @@ impl Mjcf<'_> {
         let stem = source.path.file_stem().map(|s| s.to_string_lossy()).unwrap_or_default();
         let name = model.map(str::trim).filter(|n| !n.is_empty()).unwrap_or(&stem);
         let mut builder = Mechanism::builder(name);
-        for link in self.links {
+        for link in std::mem::take(&mut self.links) {
             builder.link(link);
         }
-        for joint in self.joints {
-            builder.joint(joint);
+        for joint in std::mem::take(&mut self.joints) {
+            for part in self.parts_of(joint) {
+                builder.joint(part);
+            }
         }
         for joint in self.loops {
             builder.loop_joint(joint);

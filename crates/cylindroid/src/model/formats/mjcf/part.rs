@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use crate::error::shown;
-use crate::model::{JointSpec, Link, LoadReport, LoopJointSpec};
+use crate::model::{JointSpec, Link, LoadReport, LoopJointSpec, Mimic};
 use crate::spatial::Pose;
 
 /// The place of a model among those that attach one another.
@@ -25,6 +25,7 @@ pub(super) struct Part {
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<JointSpec>,
     pub(super) loops: Vec<LoopJointSpec>,
+    pub(super) sums: BTreeMap<String, Vec<Mimic>>,
     pub(super) disabled_collisions: Vec<[String; 2]>,
     pub(super) sites: Vec<(String, String, Pose)>,
     pub(super) starts: Vec<(String, Vec<f64>)>,
