@@ -17,36 +17,8 @@ import mujoco
 import numpy as np
 import pinocchio
 
-LINEAR = mujoco.mjtEq.mjEQ_JOINT
-
-
-def of_joints(model, qpos):
-    sizes = ({0: 7, 1: 4}.get(int(kind), 1) for kind in model.jnt_type)
-    return [qpos[start : start + size].tolist() for start, size in zip(model.jnt_qposadr, sizes)]
-
-
-def couple(model, qpos):
-    """Joints that active equality constraints tie together linearly."""
-    for _ in range(model.neq):
-        for i in range(model.neq):
-            if not model.eq_active0[i]:
-                continue
-            data = model.eq_data[i]
-            if model.eq_type[i] == mujoco.mjtEq.mjEQ_TENDON:
-                start = model.tendon_adr[model.eq_obj1id[i]]
-                if model.tendon_num[model.eq_obj1id[i]] != 2 or model.eq_obj2id[i] >= 0:
-                    continue
-                if model.wrap_type[start] != mujoco.mjtWrap.mjWRAP_JOINT:
-                    continue
-                a, b = (model.jnt_qposadr[model.wrap_objid[start + k]] for k in (0, 1))
-                ca, cb = model.wrap_prm[start], model.wrap_prm[start + 1]
-                turn = data[0] - ca * (qpos[a] - model.qpos0[a])
-                qpos[b] = model.qpos0[b] + turn / cb
-            elif model.eq_type[i] == LINEAR and model.eq_obj2id[i] >= 0:
-                if np.any(data[2:5] != 0):
-                    continue
-                a, b = (model.jnt_qposadr[j] for j in (model.eq_obj1id[i], model.eq_obj2id[i]))
-                qpos[a] = model.qpos0[a] + data[0] + data[1] * (qpos[b] - model.qpos0[b])
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "vectors"))
+from mujoco_vectors import couple, of_joints
 
 
 def of_mujoco(path):

