@@ -41,7 +41,7 @@ fn with_requirements(venv: &Path) -> Result<PathBuf> {
     if fs::read_to_string(&stamp).is_ok_and(|got| got == wanted) {
         return Ok(python);
     }
-    println!("fetching what the tests of the Python package need (450 MB, once)");
+    println!("fetching what the tests of the Python package need (2.2 GB installed, once)");
     pip(&python, &["-r", REQUIREMENTS]).context("pip needs a way to PyPI")?;
     fs::write(stamp, wanted)?;
     Ok(python)

@@ -10,7 +10,7 @@
 //!          (its orthogonality)
 //! Checked  tests in this file
 
-use super::small_gemm::{AlignedColumns, LANES};
+use super::small_gemm::{AlignedColumns, LANES, lanes};
 use crate::scalar::{Array, Simd4};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Avx2, Lanes4};
@@ -200,16 +200,6 @@ fn remove<R: Simd4>(column: &[f64], others: &mut [f64], mut f: impl FnMut(usize,
         f(i, along);
         i += 1;
     }
-}
-
-/// Products of padded columns whose sum is theirs.
-#[inline(always)]
-fn lanes<R: Simd4>(a: &[f64], b: &[f64]) -> R {
-    let mut sum = R::splat(0.0);
-    for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-        sum = R::load(x).mul_add(R::load(y), sum);
-    }
-    sum
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -190,7 +190,7 @@ fn solve<R: SimdFloat>(n: usize, l: &[R], x: &mut [R]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::{Matrix, Svd};
+    use crate::linalg::{Matrix, Svd, norm};
     use crate::scalar::uniform;
 
     /// V diag(s / (s^2 + l)) U^T e for any shape, with clamped columns.
@@ -207,16 +207,45 @@ mod tests {
             let problem = DampedProblem { a: a.as_slice(), e: &e, clamped: &clamped, damping };
             assert!(Damped::new(m, n).solve(problem, &mut d));
             let free = Matrix::from_fn(m, n, |i, j| if clamped[j] { 0.0 } else { a[(i, j)] });
-            let svd = Svd::of(&free);
-            let mut expected = vec![0.0; n];
-            for i in 0..svd.len() {
-                let s = svd.value(i);
-                let gain = dot(svd.u(i), &e) * s / (s * s + damping);
-                expected.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x += gain * v);
-            }
-            for (d, x) in d.iter().zip(&expected) {
+            for (d, x) in d.iter().zip(&by_svd(&free, &e, damping)) {
                 assert!((d - x).abs() < 1e-12, "{m} x {n}");
             }
         }
+    }
+
+    /// Rows that nearly depend on each other, and dampings far below their squares.
+    #[test]
+    fn refined_steps_are_those_of_the_svd() {
+        let mut random = 5;
+        for round in 0..700 {
+            let (m, n) = [(6, 7), (6, 6), (6, 5), (3, 7), (5, 5), (12, 14), (2, 1)][round % 7];
+            let damping = 10_f64.powf(-2.0 - 5.0 * uniform(&mut random));
+            let apart = damping.sqrt() * uniform(&mut random);
+            let mut a = Matrix::from_fn(m, n, |_, _| uniform(&mut random) - 0.5);
+            for j in 0..n {
+                a[(m - 1, j)] = a[(0, j)] + apart * (uniform(&mut random) - 0.5);
+            }
+            let e: Vec<f64> = (0..m).map(|_| uniform(&mut random) - 0.5).collect();
+            let mut d = vec![0.0; n];
+            let problem =
+                DampedProblem { a: a.as_slice(), e: &e, clamped: &vec![false; n], damping };
+            assert!(Damped::new(m, n).solve_refined(problem, &mut d));
+            let expected = by_svd(&a, &e, damping);
+            for (d, x) in d.iter().zip(&expected) {
+                let error = (d - x).abs() / norm(&expected);
+                assert!(error < 1e-10, "{m} x {n}, damping {damping:e}: {error:e}");
+            }
+        }
+    }
+
+    fn by_svd(a: &Matrix, e: &[f64], damping: f64) -> Vec<f64> {
+        let svd = Svd::of(a);
+        let mut d = vec![0.0; a.cols()];
+        for i in 0..svd.len() {
+            let s = svd.value(i);
+            let gain = dot(svd.u(i), e) * s / (s * s + damping);
+            d.iter_mut().zip(svd.v(i)).for_each(|(x, v)| *x += gain * v);
+        }
+        d
     }
 }

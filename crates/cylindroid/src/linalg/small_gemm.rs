@@ -302,8 +302,9 @@ fn lanes_of_dot<R: Simd4>(b: &[f64], stride: usize, i: usize, j: usize, k: usize
     if i < k { lanes::<R>(padded(b, stride, i), padded(b, stride, j)) } else { R::splat(0.0) }
 }
 
+/// Products of padded columns whose sum is theirs.
 #[inline(always)]
-fn lanes<R: Simd4>(a: &[f64], b: &[f64]) -> R {
+pub(super) fn lanes<R: Simd4>(a: &[f64], b: &[f64]) -> R {
     let mut sum = R::splat(0.0);
     for (x, y) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
         sum = R::load(x).mul_add(R::load(y), sum);

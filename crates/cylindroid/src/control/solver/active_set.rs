@@ -166,6 +166,12 @@ impl ActiveSet {
         self.rounds
     }
 
+    /// True if rows are held at their bounds.
+    #[cfg(test)]
+    pub(in crate::control) fn is_at_bound(&self) -> bool {
+        !self.working.is_empty()
+    }
+
     /// The rows that stop the last minimised level, with the signs of their bounds.
     pub(in crate::control) fn stopping(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let all = self.working.iter().zip(&self.multipliers);

@@ -5,9 +5,9 @@
 //!          Scaled: of all y with A_k y parallel to b_k the one with the largest scale s <= 1,
 //!          A_k y = s b_k; as two levels, (1 - p p^T) A_k y = 0 and p^T A_k y = |b_k|, p = b_k / |b_k|;
 //!          of several tasks in a level each has its own p and s
-//! Shapes   A_k: m_k x n
 //!          A task is reflected so that p becomes its first axis: the rows across are independent
 //!          where those of the task are
+//! Shapes   A_k: m_k x n
 //! Valid    any rank; a direction that cannot be kept exactly is reported
 //! Source   Escande, Mansard & Wieber 2014; Flacco, De Luca & Khatib 2015 (scaling)
 //! Checked  src/control/solver/hierarchy/tests.rs

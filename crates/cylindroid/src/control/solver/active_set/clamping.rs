@@ -31,7 +31,12 @@ impl ActiveSet {
                 break; // the rest can no longer do the task
             }
             let is_clear = self.load_rows(level, columns, m, precision.rank);
-            let rank = if is_clear { m } else { self.load_gains(level, columns, precision) };
+            let rank = if is_clear {
+                m
+            } else {
+                level.project(&self.basis, columns);
+                level.load_gains(precision)
+            };
             if round == 0 {
                 possible = rank;
             } else if rank < possible {
@@ -91,19 +96,6 @@ impl ActiveSet {
             }
         }
         best
-    }
-
-    /// The inverse singular values of the rows on what the working ones leave, and their number.
-    fn load_gains(&self, level: &mut Level, columns: usize, precision: Precision) -> usize {
-        level.project(&self.basis, columns);
-        level.svd.decompose_warm(&level.projected);
-        let mut rank = 0;
-        for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
-            let is_kept = s > precision.rank * level.scale;
-            *gain = if is_kept { 1.0 / s } else { 0.0 };
-            rank += usize::from(is_kept);
-        }
-        rank
     }
 
     /// The least point with the working rows at their bounds, into `normal`.

@@ -74,17 +74,14 @@ impl ActiveSet {
                 level.project_on(&self.basis, *projected..columns);
                 *projected = columns;
                 if !level.least_squares(&mut self.direction) {
-                    level.svd.decompose_warm(&level.projected);
-                    for (gain, s) in level.gains.iter_mut().zip(level.svd.values()) {
-                        *gain = if s > precision.rank * scale { 1.0 / s } else { 0.0 };
-                    }
+                    level.load_gains(precision);
                     level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
                 }
                 self.basis.project_out(columns, &mut self.direction);
             }
             Objective::Damped(level, damping) => {
-                // y = y_w + z, y_w in the span of the basis: z = P^T (P P^T + d)^-1 (b - A y_w), P the rows
-                // on the free motions
+                // y = y_w + z, y_w in the span of the basis, P the rows on the free motions:
+                // z = P^T (P P^T + d)^-1 (b - A y_w)
                 self.normal.copy_from_slice(&self.y);
                 self.basis.project_out(columns, &mut self.normal);
                 self.basis.project_out(columns, &mut self.normal);

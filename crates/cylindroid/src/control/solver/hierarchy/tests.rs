@@ -328,7 +328,7 @@ fn scaled_levels_keep_their_direction() {
 #[test]
 fn free_levels_are_those_of_the_active_set() {
     let mut random = Random(29);
-    let (mut free, mut other) = (0, 0);
+    let (mut free, mut other, mut beside_bounds) = (0, 0, 0);
     for _ in 0..4000 {
         let problem = Problem::random(&mut random);
         let mut by_rows = problem.active_set();
@@ -347,6 +347,7 @@ fn free_levels_are_those_of_the_active_set() {
                 by_rows.solve(&mut level, Precision::EXACT);
             } else {
                 free += 1;
+                beside_bounds += usize::from(by_rows.is_at_bound());
             }
             by_svd.solve(&mut same, Precision::EXACT);
             // Levels are unique, points that lower levels may move are not.
@@ -363,5 +364,6 @@ fn free_levels_are_those_of_the_active_set() {
             assert!((x - y).abs() < 1e-8, "{:?} {:?}", by_rows.point(), by_svd.point());
         }
     }
-    assert!(free > 300 && other > 3000, "{free} free, {other} others");
+    let counts = format!("{free} free, {beside_bounds} of them at bounds, {other} others");
+    assert!(free > 300 && other > 3000 && beside_bounds > 100, "{counts}");
 }
