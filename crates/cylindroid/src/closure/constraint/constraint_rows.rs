@@ -199,12 +199,12 @@ impl ConstraintRows {
         Ok(Self { pairs: pair_constraints(mechanism).collect::<Result<_>>()? })
     }
 
-    /// Largest number of rows; universal joints with both axes along one line have fewer.
-    pub(crate) fn most_rows(&self) -> usize {
-        let rows = |p: &PairConstraints| {
+    /// Largest number of rows of each loop joint and contact; universal joints with both axes along
+    /// one line have fewer.
+    pub(crate) fn most_rows(&self) -> impl Iterator<Item = usize> + '_ {
+        self.pairs.iter().map(|p| {
             p.wrenches.len() + usize::from(p.crossed.is_some()) + usize::from(p.measure.is_some())
-        };
-        self.pairs.iter().map(rows).sum()
+        })
     }
 
     /// The rows at a configuration, without allocation where `rows` has the room, and the

@@ -1,19 +1,19 @@
 //! Coordinate partitioning: the passive joints of a closed chain as functions of the actuated ones.
 //!
-//! Formula  C_p s_p + C_a s_a = -r (rows of loops and contacts, r their residuals). C_p P = Q [R; 0]
-//!          by Householder reflections, Q^T [C_a r] = [B r_1; S r_2]: S s_a = -r_2 restricts the
-//!          actuated joints, s_p = -R^+ (B s_a + r_1) follows. Motions, r = 0: W^(1/2) s_a = D y, D
-//!          an orthonormal basis of ker S W^(-1/2). Correction, for these r: the least
-//!          |W^(1/2) s_a|, then the least |s_p|
-//! Shapes   C_p: t x p, C_a: t x a, D: a x d
+//! Formula  C_p s_p + C_a s_a = -r (rows of loops and contacts, r their residuals), solved for each
+//!          set of loops that share joints by itself: `coordinate_partitioning/coupled_loops.rs`
 //! Units    rows and columns of lengths divided by the characteristic length; rates outside in
 //!          rad/s and m/s
 //! Valid    where all ranks are clear and the actuated joints take a large share of every motion;
 //!          says so elsewhere, where `actuation_map.rs` holds. No allocation
-//! Why so   the actuation map of regular configurations, at a tenth of the time
-//! Source   Wehage & Haug 1982; least norms: Golub & Van Loan, Matrix Computations, 4th ed., 5.5.6
+//! Why so   the actuation map of regular configurations, at a tenth of the time; linear in the number
+//!          of loops that share no joints
+//! Source   Wehage & Haug 1982
 //! Checked  tests in this file
 
+mod coupled_loops;
+
+use super::limb_graph::Sets;
 use crate::closure::constraint::constraint_rows::{
     ConstraintRow, ConstraintRows, for_each_rate, joints_with_rate, rate_unit,
 };
@@ -21,13 +21,8 @@ use crate::closure::constraint::loop_closure_error::LoopClosureError;
 use crate::closure::constraint::velocity_constraint::Unit;
 use crate::error::Result;
 use crate::kinematics::State;
-use crate::linalg::{Elimination, Matrix, RankGap, dot, norm};
-use crate::model::Mechanism;
-use crate::tolerance::MIN_ACTUATED_SHARE;
-
-/// Remainders of columns that are roundings of zero, and those that are regular, for columns of
-/// length one [-].
-const GAP: RankGap = RankGap { zero: 1e-11, regular: 1e-6 };
+use crate::model::{LoopJoint, Mechanism};
+use coupled_loops::{CoupledLoops, Velocity};
 
 /// The loop constraints at a configuration, solved for the passive joints.
 #[derive(Debug, Clone)]
@@ -35,33 +30,17 @@ pub(crate) struct CoordinatePartitioning {
     state: State,
     constraints: ConstraintRows,
     rows: Vec<ConstraintRow>,
-    /// The column of each of the n coordinates and e actuated loop joints; `None` if locked.
-    columns: Vec<Option<usize>>,
-    /// Number of passive columns; they come first.
-    passive: usize,
-    /// For each column: its place among the coordinates and loop joints, and rate = scale * scaled
-    /// rate.
-    places: Vec<(usize, f64)>,
-    /// The column of each loop joint of one coordinate; `None` if it is passive.
-    loop_columns: Vec<Option<usize>>,
-    /// [C_p C_a r], then [R B r_1; 0 S r_2]: t x (p + a + 1).
-    system: Matrix,
-    left: Elimination,
-    /// R^T where the passive joints have motions of their own: p x r.
-    transposed: Matrix,
-    right: Elimination,
-    /// -R^+ B: p x a.
-    dependence: Matrix,
-    /// (S W^(-1/2))^T: a x (t - r).
-    restriction: Matrix,
-    across: Elimination,
-    /// W^(1/2), in scaled rates.
-    roots: Vec<f64>,
-    passive_rates: Vec<f64>,
-    actuated_rates: Vec<f64>,
-    right_side: Vec<f64>,
-    /// Passive rates in the order of the elimination.
-    ordered: Vec<f64>,
+    /// The place of each row in its set.
+    row_places: Vec<usize>,
+    /// Loops that share joints; the joints of no loop are a set too.
+    sets: Vec<CoupledLoops>,
+    /// The set of each loop joint and contact; `None` if no joint moves it.
+    set_of_pair: Vec<Option<usize>>,
+    /// The set of each of the n coordinates and e actuated loop joints, and the column in it; `None`
+    /// if locked.
+    columns: Vec<Option<(usize, usize)>>,
+    /// The place among them of each loop joint of one coordinate; `None` if it is passive.
+    loop_places: Vec<Option<usize>>,
     /// Lower bound of the actuated share of a motion at the configuration solved last.
     least_share: f64,
 }
@@ -69,59 +48,74 @@ pub(crate) struct CoordinatePartitioning {
 impl CoordinatePartitioning {
     /// For the loops and contacts of a mechanism; the coordinates `locked` are fixed.
     pub(crate) fn new(mechanism: &Mechanism, locked: &[usize]) -> Result<Self> {
-        let (n, length) = (mechanism.n(), mechanism.reach());
         let constraints = ConstraintRows::of(mechanism)?;
-        let own = mechanism.coordinates().iter().enumerate();
-        let own = own.map(|(i, c)| {
-            (!locked.contains(&i)).then(|| (c.actuated, Unit::of(c.kind).size(length)))
-        });
+        let state = mechanism.state(mechanism.home())?;
         let loops = joints_with_rate(mechanism);
-        let actuated = loops.iter().filter(|l| l.actuated);
-        let velocities: Vec<Option<(bool, f64)>> =
-            own.chain(actuated.map(|l| Some((true, rate_unit(l).size(length))))).collect();
-        let mut columns = vec![None; velocities.len()];
-        let mut places = Vec::new();
-        for is_actuated in [false, true] {
-            for (i, v) in velocities.iter().enumerate() {
-                if let Some((actuated, scale)) = *v
-                    && actuated == is_actuated
-                {
-                    columns[i] = Some(places.len());
-                    places.push((i, scale));
-                }
+        let mut actuated = mechanism.n()..;
+        let loop_places: Vec<Option<usize>> =
+            loops.iter().map(|l| if l.actuated { actuated.next() } else { None }).collect();
+        let velocities = velocities(mechanism, &loops, locked);
+
+        let mut rows = Vec::with_capacity(constraints.most_rows().sum());
+        constraints.load(&state, &mut rows);
+        // Joints that move the same loop joint or contact belong together: the first one of each.
+        let mut together = Sets::new(velocities.len());
+        let mut first_of_pair = vec![None; constraints.most_rows().count()];
+        let mut join = |pair: usize, place: usize| {
+            if velocities[place].is_some() {
+                together.merge(place, *first_of_pair[pair].get_or_insert(place));
+            }
+        };
+        for_each_rate(&state, &rows, |i, coordinate, _| join(rows[i].pair, coordinate));
+        for row in &rows {
+            if let Some(place) = row.rate_of.and_then(|k| loop_places[k]) {
+                join(row.pair, place);
             }
         }
-        let p = velocities.iter().flatten().filter(|v| !v.0).count();
-        let a = places.len() - p;
-        let mut next = n;
-        let loop_columns = loops
-            .iter()
-            .map(|l| {
-                next += usize::from(l.actuated);
-                if l.actuated { columns[next - 1] } else { None }
-            })
+
+        // Sets in the order of their first joints; that of the joints of no loop has no first one.
+        let mut in_loops = vec![false; velocities.len()];
+        first_of_pair.iter().flatten().for_each(|&place| in_loops[together.of(place)] = true);
+        let mut firsts: Vec<Option<usize>> = Vec::new();
+        let mut members: Vec<[Vec<Velocity>; 2]> = Vec::new();
+        let mut set_of = vec![None; velocities.len()];
+        for (place, velocity) in velocities.into_iter().enumerate() {
+            let Some((is_actuated, velocity)) = velocity else { continue };
+            let first = Some(together.of(place)).filter(|&first| in_loops[first]);
+            let set = firsts.iter().position(|f| *f == first).unwrap_or_else(|| {
+                firsts.push(first);
+                members.push(Default::default());
+                members.len() - 1
+            });
+            set_of[place] = Some(set);
+            members[set][usize::from(is_actuated)].push(velocity);
+        }
+        let set_of_pair: Vec<Option<usize>> =
+            first_of_pair.into_iter().map(|first| first.and_then(|p: usize| set_of[p])).collect();
+        let mut most_rows = vec![0; members.len()];
+        for (set, rows) in set_of_pair.iter().zip(constraints.most_rows()) {
+            set.iter().for_each(|&set| most_rows[set] += rows);
+        }
+        let sets: Vec<CoupledLoops> = members
+            .into_iter()
+            .zip(most_rows)
+            .map(|([passive, actuated], t)| CoupledLoops::new(passive, actuated, t))
             .collect();
-        let t = constraints.most_rows();
+        let mut columns = vec![None; set_of.len()];
+        for (set, loops) in sets.iter().enumerate() {
+            for (column, velocity) in loops.velocities().iter().enumerate() {
+                columns[velocity.place] = Some((set, column));
+            }
+        }
         Ok(Self {
-            state: mechanism.state(mechanism.home())?,
+            state,
             constraints,
-            rows: Vec::with_capacity(t),
+            row_places: Vec::with_capacity(rows.len()),
+            rows,
+            sets,
+            set_of_pair,
             columns,
-            passive: p,
-            places,
-            loop_columns,
-            system: Matrix::zeros(t, p + a + 1),
-            left: Elimination::workspace(p),
-            transposed: Matrix::zeros(p, t.min(p)),
-            right: Elimination::workspace(t.min(p)),
-            dependence: Matrix::zeros(p, a),
-            restriction: Matrix::zeros(a, t),
-            across: Elimination::workspace(t),
-            roots: vec![1.0; a],
-            passive_rates: vec![0.0; p],
-            actuated_rates: vec![0.0; a],
-            right_side: vec![0.0; t.max(p)],
-            ordered: vec![0.0; p],
+            loop_places,
             least_share: 0.0,
         })
     }
@@ -134,11 +128,6 @@ impl CoordinatePartitioning {
     /// Lower bound of the actuated share of all motions at the configuration solved last [-].
     pub(crate) fn least_share(&self) -> f64 {
         self.least_share
-    }
-
-    /// Number of actuated joints that are not locked.
-    pub(crate) fn actuated(&self) -> usize {
-        self.places.len() - self.passive
     }
 
     /// The mechanism at the configuration loaded last.
@@ -154,21 +143,27 @@ impl CoordinatePartitioning {
         self.state.set(q)?;
         let closure_error = self.constraints.load(&self.state, &mut self.rows);
         let length = self.state.mechanism().reach();
-        let Self { system, columns, places, loop_columns, .. } = self;
+        let Self { state, rows, row_places, sets, set_of_pair, columns, loop_places, .. } = self;
         // Rates of passive loop joints add no constraint.
-        self.rows.retain(|row| row.rate_of.is_none_or(|k| loop_columns[k].is_some()));
-        system.as_mut_slice().fill(0.0);
-        for_each_rate(&self.state, &self.rows, |i, coordinate, rate| {
-            if let Some(j) = columns[coordinate] {
-                system[(i, j)] += rate * places[j].1 / self.rows[i].unit.size(length);
-            }
+        rows.retain(|row| {
+            set_of_pair[row.pair].is_some() && row.rate_of.is_none_or(|k| loop_places[k].is_some())
         });
-        let last = system.cols() - 1;
-        for (i, row) in self.rows.iter().enumerate() {
-            if let Some(j) = row.rate_of.and_then(|k| loop_columns[k]) {
-                system[(i, j)] -= places[j].1 / row.unit.size(length);
+        sets.iter_mut().for_each(CoupledLoops::clear);
+        row_places.clear();
+        for row in rows.iter() {
+            let set = set_of_pair[row.pair].map(|set| &mut sets[set]);
+            row_places.extend(set.map(|set| set.push_row(row.unit.size(length), row.residual)));
+        }
+        let mut add = |i: usize, place: usize, rate: f64| {
+            if let Some((set, column)) = columns[place] {
+                sets[set].add(row_places[i], column, rate);
             }
-            system[(i, last)] = row.scaled_residual(length);
+        };
+        for_each_rate(state, rows, &mut add);
+        for (i, row) in rows.iter().enumerate() {
+            if let Some(place) = row.rate_of.and_then(|k| loop_places[k]) {
+                add(i, place, -1.0);
+            }
         }
         Ok(closure_error)
     }
@@ -177,115 +172,41 @@ impl CoordinatePartitioning {
     /// (or none); false where a rank is not clear, or where the actuated joints may take a small
     /// share of a motion.
     pub(crate) fn solve(&mut self, weights: &[f64]) -> bool {
-        let (p, a) = (self.passive, self.actuated());
-        let size = (0..p + a).map(|j| norm(self.system.column(j))).fold(0.0, f64::max);
-        if !size.is_finite() || !self.left.eliminate(&mut self.system, p, GAP.times(size)) {
-            return false;
+        let mut largest = 0.0_f64;
+        for set in &mut self.sets {
+            let Some(dependence) = set.solve(weights) else { return false };
+            largest = largest.max(dependence);
         }
-        let rank = self.left.rank();
-        if rank < p {
-            for i in 0..rank {
-                let column = self.transposed.column_mut(i);
-                column[..i].fill(0.0);
-                for (j, x) in column.iter_mut().enumerate().skip(i) {
-                    *x = self.system[(i, j)];
-                }
-            }
-            if !self.right.eliminate(&mut self.transposed, rank, GAP.times(size)) {
-                return false;
-            }
-        }
-        let mut square = 0.0;
-        for k in 0..a {
-            self.right_side[..rank].copy_from_slice(&self.system.column(p + k)[..rank]);
-            self.follow();
-            for (x, rate) in self.dependence.column_mut(k).iter_mut().zip(&self.passive_rates) {
-                *x = -rate;
-            }
-            square += dot(&self.passive_rates, &self.passive_rates);
-        }
-        // The actuated share of a motion is at least 1 / sqrt(1 + |T|^2).
-        self.least_share = (1.0 + square).sqrt().recip();
-        if !((1.0 + square) * MIN_ACTUATED_SHARE * MIN_ACTUATED_SHARE < 1.0) {
-            return false;
-        }
-        for (root, &(place, scale)) in self.roots.iter_mut().zip(&self.places[p..]) {
-            *root = scale * weights.get(place).map_or(1.0, |w| w.sqrt());
-        }
-        self.restrict(rank, size)
-    }
-
-    /// The rows that restrict the actuated joints; false where their rank is not clear.
-    fn restrict(&mut self, rank: usize, size: f64) -> bool {
-        let (p, a, t) = (self.passive, self.actuated(), self.system.rows());
-        let mut most = 0.0_f64;
-        for i in rank..t {
-            let column = self.restriction.column_mut(i - rank);
-            for (k, x) in column.iter_mut().enumerate() {
-                *x = self.system[(i, p + k)];
-                most = most.max(x.abs());
-            }
-        }
-        if most <= GAP.zero * size {
-            self.restriction.as_mut_slice().fill(0.0);
-        }
-        for j in 0..t - rank {
-            let column = self.restriction.column_mut(j);
-            column.iter_mut().zip(&self.roots).for_each(|(x, root)| *x /= root);
-        }
-        let size = (0..t - rank).map(|j| norm(self.restriction.column(j))).fold(0.0, f64::max);
-        self.across.eliminate(&mut self.restriction, t - rank, GAP.times(size))
-            && self.across.rank() <= a
-    }
-
-    /// The least s_p with `R P^T s_p = right_side`, into the passive rates.
-    fn follow(&mut self) {
-        let (p, rank) = (self.passive, self.left.rank());
-        let ordered = &mut self.ordered[..p];
-        if rank < p {
-            self.right.least_solution(&self.transposed, &self.right_side[..rank], ordered);
-        } else {
-            ordered.copy_from_slice(&self.right_side[..p]);
-            self.left.solve(&self.system, ordered);
-        }
-        self.restore_order();
-    }
-
-    /// Passive rates in the order of their columns.
-    fn restore_order(&mut self) {
-        for (x, &i) in self.ordered.iter().zip(self.left.order()) {
-            self.passive_rates[i] = *x;
-        }
+        // The actuated share of a motion is at least 1 / sqrt(1 + |T|^2), T that of the joints that
+        // depend on the actuated ones: the largest of the sets, which share no joint.
+        self.least_share = (1.0 + largest).sqrt().recip();
+        true
     }
 
     /// d: number of independent actuated motions.
     pub(crate) fn motions(&self) -> usize {
-        self.actuated() - self.across.rank()
+        self.sets.iter().map(CoupledLoops::motions).sum()
     }
 
     /// Motion `j` of the d: the rates of the n coordinates and e loop joints for y = e_j.
     pub(crate) fn motion_into(&mut self, j: usize, rates: &mut [f64]) {
-        self.actuated_rates.fill(0.0);
-        self.actuated_rates[self.across.rank() + j] = 1.0;
-        self.across.apply(&self.restriction, &mut self.actuated_rates);
-        self.actuated_rates.iter_mut().zip(&self.roots).for_each(|(x, root)| *x /= root);
-        self.dependence.mul_vec_into(&self.actuated_rates, &mut self.passive_rates);
-        self.store(rates);
+        rates.fill(0.0);
+        if let Some((set, j)) = set_of(&mut self.sets, j, CoupledLoops::motions) {
+            set.motion_into(j, rates);
+        }
     }
 
     /// Number of motions of the passive joints alone.
     pub(crate) fn passive_motions(&self) -> usize {
-        self.passive - self.left.rank()
+        self.sets.iter().map(CoupledLoops::passive_motions).sum()
     }
 
     /// Motion `j` of them, of unit norm (scaled).
     pub(crate) fn passive_motion_into(&mut self, j: usize, rates: &mut [f64]) {
-        self.ordered.fill(0.0);
-        self.ordered[self.left.rank() + j] = 1.0;
-        self.right.apply(&self.transposed, &mut self.ordered);
-        self.restore_order();
-        self.actuated_rates.fill(0.0);
-        self.store(rates);
+        rates.fill(0.0);
+        if let Some((set, j)) = set_of(&mut self.sets, j, CoupledLoops::passive_motions) {
+            set.passive_motion_into(j, rates);
+        }
     }
 
     /// The change of the n coordinates and e loop joints that closes the loops to first order, in two
@@ -293,37 +214,60 @@ impl CoordinatePartitioning {
     /// the passive ones that follow them, `actuated_step`; zero without more actuated joints than degrees
     /// of freedom.
     pub(crate) fn correction_into(&mut self, passive_step: &mut [f64], actuated_step: &mut [f64]) {
-        let (rank, last) = (self.left.rank(), self.system.cols() - 1);
-        let residuals = self.system.column(last);
-        self.right_side[..rank].copy_from_slice(&residuals[..rank]);
-        self.across.least_solution(&self.restriction, &residuals[rank..], &mut self.actuated_rates);
-        self.actuated_rates.iter_mut().zip(&self.roots).for_each(|(x, root)| *x /= -root);
-        self.dependence.mul_vec_into(&self.actuated_rates, &mut self.passive_rates);
-        self.store(actuated_step);
-        self.follow();
-        self.passive_rates.iter_mut().for_each(|x| *x = -*x);
-        self.actuated_rates.fill(0.0);
-        self.store(passive_step);
-    }
-
-    /// Rates of all joints from the scaled ones.
-    fn store(&self, rates: &mut [f64]) {
-        rates.fill(0.0);
-        let scaled = self.passive_rates.iter().chain(&self.actuated_rates);
-        for (s, &(place, scale)) in scaled.zip(&self.places) {
-            rates[place] = s * scale;
+        passive_step.fill(0.0);
+        actuated_step.fill(0.0);
+        for set in &mut self.sets {
+            set.correction_into(passive_step, actuated_step);
         }
     }
 }
 
+/// The n coordinates and e actuated loop joints, with true for actuated ones; `None` if locked.
+fn velocities(
+    mechanism: &Mechanism,
+    loops: &[&LoopJoint],
+    locked: &[usize],
+) -> Vec<Option<(bool, Velocity)>> {
+    let length = mechanism.reach();
+    let own = mechanism.coordinates().iter().map(|c| (c.actuated, Unit::of(c.kind)));
+    let actuated = loops.iter().filter(|l| l.actuated).map(|l| (true, rate_unit(l)));
+    own.chain(actuated)
+        .enumerate()
+        .map(|(place, (is_actuated, unit))| {
+            let velocity = Velocity { place, scale: unit.size(length) };
+            (!locked.contains(&place)).then_some((is_actuated, velocity))
+        })
+        .collect()
+}
+
+/// The set of motion `j` of all, and the place of the motion among those of the set.
+fn set_of(
+    sets: &mut [CoupledLoops],
+    mut j: usize,
+    motions: fn(&CoupledLoops) -> usize,
+) -> Option<(&mut CoupledLoops, usize)> {
+    for set in sets {
+        let count = motions(set);
+        if j < count {
+            return Some((set, j));
+        }
+        j -= count;
+    }
+    None
+}
+
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
     use crate::closure::ActuationMap;
     use crate::closure::assemble;
-    use crate::linalg::Svd;
+    use crate::linalg::{Matrix, Svd, norm};
     use crate::model::catalogue;
+    use crate::model::formats::toml;
     use crate::scalar::uniform;
+    use crate::tolerance::MIN_ACTUATED_SHARE;
 
     /// Columns of both span the same space: each is its projection on the other.
     fn same_span(a: &Matrix, b: &Matrix, tolerance: f64, of: &str) {
@@ -345,11 +289,9 @@ mod tests {
         let mut state = 7_u64;
         let mut next = move || 2.0 * uniform(&mut state) - 1.0;
         let mut solved = 0;
-        for name in catalogue::names() {
-            let mechanism = catalogue::load(name).unwrap();
-            if !mechanism.is_closed() {
-                continue;
-            }
+        let robots = catalogue::names().iter().map(|name| catalogue::load(name).unwrap());
+        for mechanism in robots.chain([parallelograms()]).filter(Mechanism::is_closed) {
+            let name = mechanism.name();
             let n = mechanism.n();
             let mut partitioning = CoordinatePartitioning::new(&mechanism, &[]).unwrap();
             let m = partitioning.velocities();
@@ -401,6 +343,46 @@ mod tests {
                 assert!(after < 1e-3 * before + 1e-13, "{name}: {before:e} to {after:e}");
             }
         }
-        assert_eq!(solved, 7 * 20);
+        assert_eq!(solved, 8 * 20);
+    }
+
+    /// Two parallelograms in series, each turned by its own joint, an arm between them and one of a
+    /// driven and a passive joint at the end.
+    fn parallelograms() -> Mechanism {
+        let joint = |name: &str, between: [&str; 2], origin: [f64; 2], actuated: bool| {
+            format!(
+                "[[joint]]\nname = \"{name}\"\ntype = \"revolute\"\nbetween = {between:?}\n\
+                 origin = {origin:?}\nactuated = {actuated}\n"
+            )
+        };
+        let text = [
+            "name = \"parallelograms\"\ndimension = 2\nreference = \"hand\"\n".to_owned(),
+            joint("q1", ["ground", "l1"], [0.0, 0.0], true),
+            joint("a1", ["l1", "c1"], [0.02, 0.1], false),
+            joint("b1", ["ground", "r1"], [0.1, 0.0], false),
+            joint("d1", ["r1", "c1"], [0.12, 0.1], false),
+            joint("elbow", ["c1", "base"], [0.02, 0.15], true),
+            joint("q2", ["base", "l2"], [0.0, 0.2], true),
+            joint("a2", ["l2", "c2"], [0.03, 0.3], false),
+            joint("b2", ["base", "r2"], [0.1, 0.2], false),
+            joint("d2", ["r2", "c2"], [0.14, 0.3], false),
+            joint("wrist", ["c2", "palm"], [0.03, 0.4], true),
+            joint("finger", ["palm", "hand"], [0.03, 0.5], false),
+        ];
+        toml::parse(&text.concat(), Path::new("parallelograms.toml")).unwrap()
+    }
+
+    /// Loops that share no joint are solved by themselves, the joints of none besides.
+    #[test]
+    fn loops_that_share_no_joint_are_apart() {
+        let sets = |mechanism: &Mechanism, locked: &[usize]| {
+            let partitioning = CoordinatePartitioning::new(mechanism, locked).unwrap();
+            let mut sizes: Vec<usize> =
+                partitioning.sets.iter().map(|set| set.velocities().len()).collect();
+            sizes.sort_unstable();
+            sizes
+        };
+        assert_eq!(sets(&parallelograms(), &[]), [3, 3, 3]);
+        assert_eq!(sets(&catalogue::load("stewart").unwrap(), &[]).len(), 1);
     }
 }

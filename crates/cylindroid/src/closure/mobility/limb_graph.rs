@@ -59,17 +59,22 @@ fn edges(mechanism: &Mechanism) -> Vec<Edge> {
 }
 
 /// Sets that are merged: the index of each element's representative.
-struct Sets(Vec<usize>);
+pub(super) struct Sets(Vec<usize>);
 
 impl Sets {
-    fn of(&self, mut i: usize) -> usize {
+    /// Each of `n` elements by itself.
+    pub(super) fn new(n: usize) -> Self {
+        Self((0..n).collect())
+    }
+
+    pub(super) fn of(&self, mut i: usize) -> usize {
         while self.0[i] != i {
             i = self.0[i];
         }
         i
     }
 
-    fn merge(&mut self, a: usize, b: usize) {
+    pub(super) fn merge(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.0[a.max(b)] = a.min(b);
     }
@@ -82,7 +87,7 @@ pub(crate) fn limbs(mechanism: &Mechanism, platform: FrameId) -> Vec<LimbEdges> 
         return Vec::new();
     }
     let edges = edges(mechanism);
-    let mut sets = Sets((0..edges.len()).collect());
+    let mut sets = Sets::new(edges.len());
     let mut first_at = vec![None; mechanism.nodes().len() + 1];
     let mut first_of = vec![None; mechanism.n()];
     for (i, edge) in edges.iter().enumerate() {

@@ -44,7 +44,7 @@ impl LoopEquations {
     pub(crate) fn of(mechanism: &Mechanism) -> Result<Self> {
         let pairs = ConstraintRows::of(mechanism)?;
         let rates = joints_with_rate(mechanism);
-        let loops = pairs.most_rows() - rates.len();
+        let loops = pairs.most_rows().sum::<usize>() - rates.len();
         let mut drives = 0;
         let mut drive = |actuated: bool| {
             drives += usize::from(actuated);
@@ -54,8 +54,8 @@ impl LoopEquations {
         let n = mechanism.n();
         let mut equations = Self {
             state: mechanism.state(mechanism.home())?,
-            rows: Vec::with_capacity(pairs.most_rows()),
-            places: Vec::with_capacity(pairs.most_rows()),
+            rows: Vec::with_capacity(pairs.most_rows().sum()),
+            places: Vec::with_capacity(pairs.most_rows().sum()),
             pairs,
             units: (0..n).map(|i| unit_of(mechanism, i)).collect(),
             length: mechanism.reach(),
