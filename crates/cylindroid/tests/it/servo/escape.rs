@@ -4,7 +4,13 @@
 use super::*;
 
 /// The target leaves reach and comes back within 8 s: 0.99 m out along `direction`, and back.
-fn out_and_back(servo: &mut Servo, q: &mut [f64], pose: Pose, direction: Vec3) -> (bool, Stall) {
+pub(super) fn out_and_back(
+    servo: &mut Servo,
+    q: &mut [f64],
+    pose: Pose,
+    direction: Vec3,
+    mut after_step: impl FnMut(&Servo),
+) -> (bool, Stall) {
     let dt = servo.options().dt;
     let mut step = None;
     for i in 0..(16.0 / dt) as usize {
@@ -13,6 +19,7 @@ fn out_and_back(servo: &mut Servo, q: &mut [f64], pose: Pose, direction: Vec3) -
         let target = Pose { translation: pose.translation + direction * way, ..pose };
         let now = servo.step(q, target).unwrap();
         servo.advance(q);
+        after_step(servo);
         step = Some(now);
         if time > 8.1 && now.status != Status::Moving {
             break;
@@ -20,6 +27,16 @@ fn out_and_back(servo: &mut Servo, q: &mut [f64], pose: Pose, direction: Vec3) -
     }
     let step = step.unwrap();
     (step.position_error < 1e-3 && step.orientation_error < 1e-2, servo.stall())
+}
+
+/// A random configuration with a tenth of the range to every limit.
+pub(super) fn within(robot: &Mechanism, random: &mut Random) -> Vec<f64> {
+    let mut q = random.q(robot);
+    for (q, c) in q.iter_mut().zip(robot.coordinates()) {
+        let centre = 0.5 * (c.limits.lower + c.limits.upper);
+        *q = centre + 0.8 * (*q - centre);
+    }
+    q
 }
 
 /// From random starts (none of them at a limit), along every axis; at least this many of ten return,
@@ -32,17 +49,13 @@ fn returns(name: &str, least: usize) {
     let (mut returned, mut runs) = (0, 0);
     let mut causes = std::collections::BTreeMap::new();
     for _ in 0..10 {
-        let mut start = random.q(&robot);
-        for (q, c) in start.iter_mut().zip(robot.coordinates()) {
-            let centre = 0.5 * (c.limits.lower + c.limits.upper);
-            *q = centre + 0.8 * (*q - centre);
-        }
+        let start = within(&robot, &mut random);
         let pose = robot.state(&start).unwrap().pose(robot.tool());
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             for direction in [axis, -axis] {
                 let mut servo = Servo::new(&robot, options.clone()).unwrap();
                 let mut q = start.clone();
-                let (is_back, stall) = out_and_back(&mut servo, &mut q, pose, direction);
+                let (is_back, stall) = out_and_back(&mut servo, &mut q, pose, direction, |_| ());
                 runs += 1;
                 returned += usize::from(is_back);
                 if !is_back {

@@ -1,5 +1,6 @@
-//! The inverses near singularities: figure eights of the tool.
+//! The inverses near singularities: figure eights of the tool, targets beyond reach, random motions.
 
+use super::escape::{out_and_back, within};
 use super::*;
 
 /// Error of the position and changes of the joint velocities over figure eights.
@@ -36,12 +37,68 @@ fn figure_eight(servo: &mut Servo, q: &mut [f64], axes: (Vec3, Vec3)) -> Figures
             figures.largest = figures.largest.max(error);
             figures.mean += error / (steps as f64 * 11.0 / 12.0);
         }
-        for (now, before) in servo.joint_velocities().iter().zip(&mut before) {
-            figures.changes += (now - *before).abs();
-            *before = *now;
-        }
+        figures.changes += change(servo, &mut before);
     }
     figures
+}
+
+/// Sum of the changes of the joint velocities in a step [rad/s].
+fn change(servo: &Servo, before: &mut [f64]) -> f64 {
+    let pairs = servo.joint_velocities().iter().zip(before);
+    pairs.map(|(now, before)| (now - std::mem::replace(before, *now)).abs()).sum()
+}
+
+/// The measurement behind `Method::of_servos`: targets that leave reach and come back, and random
+/// targets within the limits by the servo alone.
+#[test]
+#[ignore = "a minute in a release build; the table of docs/guide/inverses.md"]
+fn inverses_of_servos() {
+    for method in Method::ALL {
+        let (mut returned, mut arrived, mut time) = (0, 0, 0.0);
+        let [mut away, mut straight] = [0.0; 2];
+        for name in ["panda", "ur5e", "iiwa14", "puma560", "youbot"] {
+            let robot = catalogue::load(name).unwrap();
+            let mut options = ServoOptions { dt: 4e-3, method, ..ServoOptions::new(&robot) };
+            options.secondary = options.default_secondary(&robot).unwrap();
+            let mut random = Random(191);
+            for k in 0..60 {
+                let mut q = within(&robot, &mut random);
+                let pose = robot.state(&q).unwrap().pose(robot.tool());
+                let direction = [Vec3::X, Vec3::Y, Vec3::Z][k / 2 % 3] * [1.0, -1.0][k % 2];
+                let mut servo = Servo::new(&robot, options.clone()).unwrap();
+                let mut before = vec![0.0; robot.n()];
+                let (is_back, _) = out_and_back(&mut servo, &mut q, pose, direction, |servo| {
+                    away += change(servo, &mut before);
+                });
+                returned += usize::from(is_back);
+            }
+            for _ in 0..150 {
+                let mut q = random.q(&robot);
+                let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool());
+                let mut servo = Servo::new(&robot, options.clone()).unwrap();
+                let mut before = vec![0.0; robot.n()];
+                for i in 1..=7500 {
+                    let step = servo.step(&q, target).unwrap();
+                    servo.advance(&mut q);
+                    straight += change(&servo, &mut before);
+                    if step.status == Status::Reached {
+                        (arrived, time) = (arrived + 1, time + f64::from(i) * options.dt);
+                    }
+                    if step.status != Status::Moving {
+                        break;
+                    }
+                }
+            }
+        }
+        println!(
+            "{:24} back {returned} of 300, changes {:3.0} rad/s; arrived {arrived} of 750 after \
+             {:.2} s, changes {:2.0} rad/s",
+            method.name(),
+            away / 300.0,
+            time / f64::from(arrived),
+            straight / 750.0
+        );
+    }
 }
 
 /// From random configurations with a singular ratio about 0.01. Every inverse but the slow one stays
