@@ -13,6 +13,8 @@
 //! Why so   first-order laws are at rest on a saddle of E for good, and a truncated inverse already
 //!          near it. A random push would leave it too, but not the same way twice; the inverse alone
 //!          with |l| in place of l is a step of descent everywhere
+//!          The linearised task itself folds a stretched arm to the side on which it happens to stand:
+//!          where that side has little room to the limits the escape takes the other one at once
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, sections 3.4, 6.3 (directions of negative
 //!          curvature); Dauphin et al. 2014, Identifying and attacking the saddle point problem
 //! Checked  tests/it/servo/escape.rs
@@ -44,6 +46,15 @@ const QUADRATIC: f64 = 1.0;
 /// Share of the least motion along the most negative curvature from which the gradient names a side
 /// [-].
 const DECISIVE: f64 = 1e-3;
+
+/// Ratio of singular values below which an arm is stretched [-].
+pub(super) const FOLD: f64 = 0.02;
+
+/// An arm folds to the other side if it has more than so many times the room to its limits [-].
+const ROOMIER: f64 = 2.0;
+
+/// Joints slower than this share of the fastest one take no part in a motion [-].
+const SHARE: f64 = 0.1;
 
 /// Progress of the linearised task, and workspace.
 #[derive(Debug, Clone)]
@@ -127,8 +138,28 @@ impl Escape {
         }
     }
 
-    /// Computes the velocities of an escape; false if no joint motion opens a way.
-    pub(super) fn solve(&mut self, task: Linearised<'_>, edge: &mut Edge<'_>) -> bool {
+    /// True at the edge of reach where the error leads back inside and the linearised task would fold
+    /// the arm to a side with little room to the position limits, although the other one has more.
+    pub(super) fn folds_at_limit(&mut self, task: Linearised<'_>, edge: &mut Edge<'_>) -> bool {
+        let Some(k) = task.svd.len().checked_sub(1) else { return false };
+        if !(task.svd.value(k) < FOLD * task.svd.value(0)) {
+            return false;
+        }
+        let (way, along) = (task.svd.v(k), dot(task.svd.u(k), &self.error));
+        let (forwards, backwards) = room(way, edge);
+        let (own, other) = if along > 0.0 { (forwards, backwards) } else { (backwards, forwards) };
+        if !(ROOMIER * own < other && own < QUADRATIC) {
+            return false;
+        }
+        edge.load(&self.error, &mut self.hessian);
+        self.hessian.mul_vec_into(way, &mut self.gradient);
+        let curvature = dot(way, &self.gradient) + task.svd.value(k).powi(2);
+        curvature < -OPEN * along.abs()
+    }
+
+    /// Computes the velocities of an escape, or, where the arm `folds`, of the other side; false if no
+    /// joint motion opens a way.
+    pub(super) fn solve(&mut self, task: Linearised<'_>, edge: &mut Edge<'_>, folds: bool) -> bool {
         let n = self.rates.len();
         let size = norm(&self.error);
         edge.load(&self.error, &mut self.hessian);
@@ -147,12 +178,12 @@ impl Escape {
         let strong = (0..task.svd.len()).filter(|i| task.svd.value(*i) > WEAK * task.svd.value(0));
         let strong: f64 = strong.map(|i| along(task.svd.u(i))).sum();
         let all_free = task.bounds.iter().zip(&self.gradient).all(|(b, g)| !blocks(b, *g));
-        if all_free && strong > 0.5 * size * size {
+        if !folds && all_free && strong > 0.5 * size * size {
             return false;
         }
         // Every pass blocks a joint more.
         for _ in 0..=n {
-            if !self.solve_free(task, edge, size) {
+            if !self.solve_free(task, edge, size, folds) {
                 return false;
             }
             let mut clear = true;
@@ -185,7 +216,13 @@ impl Escape {
     }
 
     /// The velocities for the joints that are free.
-    fn solve_free(&mut self, task: Linearised<'_>, edge: &Edge<'_>, size: f64) -> bool {
+    fn solve_free(
+        &mut self,
+        task: Linearised<'_>,
+        edge: &Edge<'_>,
+        size: f64,
+        folds: bool,
+    ) -> bool {
         let n = self.rates.len();
         // Shifted: then singular values are eigenvalues.
         let shift = self.hessian.frobenius_norm().max(f64::MIN_POSITIVE);
@@ -210,7 +247,10 @@ impl Escape {
             let mut step = slope / curvature;
             if k == n - 1 {
                 let whole = (size * (2.0 / curvature).sqrt()).min(QUADRATIC);
-                if step.abs() < DECISIVE * whole {
+                if folds {
+                    let (forwards, backwards) = room(way, edge);
+                    step = if forwards > backwards { whole } else { -whole };
+                } else if step.abs() < DECISIVE * whole {
                     step = self.side(task, edge);
                 }
                 step = step.signum() * step.abs().max(whole).min(QUADRATIC);
@@ -231,22 +271,29 @@ impl Escape {
         if onwards != 0.0 {
             return onwards;
         }
-        let (mut forwards, mut backwards) = (f64::INFINITY, f64::INFINITY);
-        for (i, v) in way.iter().enumerate() {
-            let (limits, q) = (&edge.limits[i], edge.chain.q()[i]);
-            let speed = v * edge.space.columns[i];
-            if speed != 0.0 {
-                let (up, down) = ((limits.upper - q) / speed, (limits.lower - q) / speed);
-                forwards = forwards.min(up.max(down));
-                backwards = backwards.min(-up.min(down));
-            }
-        }
+        let (forwards, backwards) = room(way, edge);
         if forwards != backwards && !(forwards - backwards).is_nan() {
             return forwards - backwards;
         }
         let largest = way.iter().fold(0.0, |m: f64, v| if v.abs() > m.abs() { *v } else { m });
         1.0_f64.copysign(largest)
     }
+}
+
+/// The motion along `way`, and against it, to the first position limit of the joints that take a
+/// share in it.
+fn room(way: &[f64], edge: &Edge<'_>) -> (f64, f64) {
+    let speeds = || way.iter().zip(&edge.space.columns).map(|(v, column)| v * column);
+    let fastest = speeds().fold(0.0, |m: f64, speed| m.max(speed.abs()));
+    let (mut forwards, mut backwards) = (f64::INFINITY, f64::INFINITY);
+    for ((speed, limits), q) in speeds().zip(edge.limits).zip(edge.chain.q()) {
+        if speed.abs() > SHARE * fastest {
+            let (up, down) = ((limits.upper - q) / speed, (limits.lower - q) / speed);
+            forwards = forwards.min(up.max(down));
+            backwards = backwards.min(-up.min(down));
+        }
+    }
+    (forwards, backwards)
 }
 
 /// True if a joint is at a position limit and would move beyond it.

@@ -58,7 +58,7 @@ impl Servo {
     /// Replaces the velocities of a task that makes no progress, if a motion of the joints opens a
     /// way.
     fn escape(&mut self) -> bool {
-        let Some(escape) = self.escape.as_mut().filter(|e| e.is_active) else { return false };
+        let Some(escape) = &mut self.escape else { return false };
         let task = Linearised {
             j: &self.task,
             svd: &self.svd,
@@ -75,7 +75,8 @@ impl Servo {
             dt: self.options.dt,
             hessian: &mut self.hessian,
         };
-        if !escape.solve(task, &mut edge) {
+        let folds = escape.folds_at_limit(task, &mut edge);
+        if !(folds || escape.is_active) || !escape.solve(task, &mut edge, folds) {
             return false;
         }
         for ((out, rate), bound) in self.primary.iter_mut().zip(&escape.rates).zip(&self.bounds) {

@@ -4,6 +4,7 @@
 
 use super::super::approach;
 use super::super::edge::Edge;
+use super::super::escape::FOLD;
 use super::super::limits::{JointState, acceleration_of};
 use super::super::options::SecondaryNullSpace;
 use super::super::secondary::Context;
@@ -222,7 +223,8 @@ impl Servo {
     /// Stores the joint velocities of a step in which no joint meets a limit; `None`, without any
     /// effect, if one may, or if not all directions are kept.
     pub(super) fn store_unlimited_rates(&mut self, q: &[f64], rank: usize) -> Option<BrakingState> {
-        if rank < self.kept.len() || self.coupled.is_some() || self.ends_at_the_edge() {
+        let is_regular = rank == self.kept.len() && self.singular_ratio() >= FOLD;
+        if !is_regular || self.coupled.is_some() || self.ends_at_the_edge() {
             return None;
         }
         let scaled = self.primary.iter().zip(&self.secondary).zip(&self.space.columns);
