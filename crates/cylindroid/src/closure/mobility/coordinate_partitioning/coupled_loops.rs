@@ -7,7 +7,7 @@
 //!          |W^(1/2) s_a|, then the least |s_p|
 //! Shapes   C_p: t x p, C_a: t x a, D: a x d
 //! Source   Wehage & Haug 1982; least norms: Golub & Van Loan, Matrix Computations, 4th ed., 5.5.6
-//! Checked  tests of `coordinate_partitioning.rs`
+//! Checked  src/closure/mobility/coordinate_partitioning.rs
 
 use crate::linalg::{Elimination, Matrix, RankGap, dot, norm};
 use crate::tolerance::MIN_ACTUATED_SHARE;

@@ -35,7 +35,7 @@ impl ActiveSet {
                 m
             } else {
                 level.project(&self.basis, columns);
-                level.load_gains(precision)
+                level.load_gains(precision.rank)
             };
             if round == 0 {
                 possible = rank;

@@ -5,7 +5,6 @@
 
 use std::ops::Range;
 
-use super::Precision;
 use crate::linalg::{
     Basis, Damped, DampedProblem, Elimination, LowerTriangle, Matrix, RankGap, Svd, norm,
 };
@@ -184,12 +183,13 @@ impl Level {
         svd.apply_gains_into(residual, gains, x);
     }
 
-    /// The inverse singular values of the projected rows, zero below the precision; returns the rank.
-    pub(super) fn load_gains(&mut self, precision: Precision) -> usize {
+    /// The inverse singular values of the projected rows, zero below the share `least` of the scale;
+    /// returns the rank.
+    pub(super) fn load_gains(&mut self, least: f64) -> usize {
         self.svd.decompose_warm(&self.projected);
         let mut rank = 0;
         for (gain, s) in self.gains.iter_mut().zip(self.svd.values()) {
-            let is_kept = s > precision.rank * self.scale;
+            let is_kept = s > least * self.scale;
             *gain = if is_kept { 1.0 / s } else { 0.0 };
             rank += usize::from(is_kept);
         }

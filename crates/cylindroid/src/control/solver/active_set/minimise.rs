@@ -74,7 +74,7 @@ impl ActiveSet {
                 level.project_on(&self.basis, *projected..columns);
                 *projected = columns;
                 if !level.least_squares(&mut self.direction) {
-                    level.load_gains(precision);
+                    level.load_gains(precision.rank);
                     level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
                 }
                 self.basis.project_out(columns, &mut self.direction);
