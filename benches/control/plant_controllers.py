@@ -15,13 +15,14 @@ ACCELERATION = 10.0
 
 class Cylindroid:
     name, is_told = "cylindroid", True
+    inverse = "truncated"
 
     def __init__(self, robot):
         self.robot = robot
 
     def start(self, motion, dt, plant):
         robot = self.robot
-        options = {"gain": GAIN, "dt": dt, "acceleration": ACCELERATION}
+        options = {"gain": GAIN, "dt": dt, "acceleration": ACCELERATION, "inverse": self.inverse}
         if self.is_told:
             options |= plant
         if robot.planar:

@@ -148,7 +148,9 @@ def main():
     parser.add_argument("--quick", action="store_true", help="4 targets of each kind")
     parser.add_argument("--targets", type=int, default=50)
     parser.add_argument("--only", default="")
+    parser.add_argument("--inverse", default="truncated", help="that of the servo")
     options = parser.parse_args()
+    controllers.Cylindroid.inverse = options.inverse
     warnings.simplefilter("ignore")
     options.folder.mkdir(parents=True, exist_ok=True)
     options.out.mkdir(parents=True, exist_ok=True)

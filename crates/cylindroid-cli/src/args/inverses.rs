@@ -64,11 +64,10 @@ fn help() -> String {
     };
     format!(
         "Inverse of the Jacobian: {}; for arms with fewer than six joints, frame- and \
-         unit-invariant: {} [default: {}, of a motion {}]",
+         unit-invariant: {} [default: {}]",
         names(false),
         names(true),
-        Method::default().name(),
-        Method::of_servos().name()
+        Method::default().name()
     )
 }
 
@@ -88,9 +87,9 @@ pub(crate) struct NamedInverseArgs {
 }
 
 impl NamedInverseArgs {
-    /// Its name, or that of the default.
-    pub(crate) fn name_or(&self, default: Method) -> &str {
-        self.inverse.as_deref().unwrap_or(default.name())
+    /// Its name.
+    pub(crate) fn name(&self) -> &str {
+        self.inverse.as_deref().unwrap_or(Method::default().name())
     }
 
     /// True if any of the options was given.

@@ -5,32 +5,29 @@ use std::collections::BTreeMap;
 use cylindroid::closure::frame_twists;
 use cylindroid::control::{InverseSelection, NamedInverse};
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
-use cylindroid::{EndEffector, Error, Method, Result, State, Twist};
+use cylindroid::{EndEffector, Error, Result, State, Twist};
 
 use crate::args::inverses::{self, NamedInverseArgs};
 use crate::output::number;
 
-/// The inverse of the arguments, or the default one.
+/// The inverse of the arguments.
 pub(crate) fn selection<'a>(
     args: &'a NamedInverseArgs,
-    default: Method,
     fallback: Option<&'a str>,
 ) -> InverseSelection<'a> {
     let given = &args.parameters.0;
     InverseSelection {
-        name: args.name_or(default),
+        name: args.name(),
         parameters: given.iter().map(|(name, value)| (*name, *value)).collect(),
         complement: args.give_up.iter().map(|m| Twist::from_array(m.0)).collect(),
         fallback,
     }
 }
 
-/// All parameters of an inverse by name: those given, and the defaults of the others.
-pub(crate) fn parameters_in_effect(
-    name: &str,
-    given: &BTreeMap<&'static str, f64>,
-) -> Result<BTreeMap<&'static str, f64>> {
-    let own = NamedInverse::named(name)?.parameters.iter();
+/// All parameters of the chosen inverse: those given, and the defaults of the others.
+pub(crate) fn parameters_in_effect(args: &NamedInverseArgs) -> Result<BTreeMap<&'static str, f64>> {
+    let given = &args.parameters.0;
+    let own = NamedInverse::named(args.name())?.parameters.iter();
     Ok(own.map(|p| (p.name, given.get(p.name).copied().unwrap_or(p.default))).collect())
 }
 
@@ -65,8 +62,7 @@ pub(crate) fn check_pitch(
         let mut found = NamedInverse::all().filter(|i| i.name == *name);
         found.any(|i| i.parameters.iter().any(|p| p.name == "h"))
     };
-    let Some(name) = [args.inverse.as_deref(), fallback].into_iter().flatten().find(needs_it)
-    else {
+    let Some(name) = [Some(args.name()), fallback].into_iter().flatten().find(needs_it) else {
         return Ok(());
     };
     let advice = || -> Result<String> {

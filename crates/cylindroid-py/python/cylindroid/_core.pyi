@@ -1417,7 +1417,7 @@ class Servo:
         null_space: str = "exact",
         task: str | None = None,
         task_axes: str | None = None,
-        inverse: str = "numerical-filtering",
+        inverse: str = "truncated",
         give_up: Sequence[str] | ArrayLike | None = None,
         fallback: str | None = None,
         tasks: None = None,

@@ -10,7 +10,7 @@ mod trajectory;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use cylindroid::control::{InverseSelection, Step, Target, TwistStep};
-use cylindroid::{Error, Method, Servo, ServoOptions, Twist};
+use cylindroid::{Error, Servo, ServoOptions, Twist};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -83,7 +83,7 @@ pub(crate) use trajectory::PyTrajectory;
 ///     'world' or 'local', the axes of the components.
 /// inverse : str
 ///     The inverse of the Jacobian: a name of `inverse_methods`, which lists parameters, units and
-///     defaults: 'numerical-filtering', 'truncated', ... (see `inverse`); for arms with fewer than six joints also
+///     defaults: 'truncated', ... (see `inverse`); for arms with fewer than six joints also
 ///     'hyperbolic' (h), 'hyperbolic-damped' (h, mu), 'hyperbolic-gram' (h, lam), 'oblique'
 ///     (give_up).
 /// give_up : list of str or array_like, (k, 6), optional
@@ -212,7 +212,7 @@ impl PyServo {
         acceleration = None, jerk = None, delay = None, time_constant = None, noise = None,
         command_timeout = None, limits = None, length = None, joint_weights = None, secondary = None,
         posture = None, null_space = "exact", task = None, task_axes = None,
-        inverse = "numerical-filtering", give_up = None, fallback = None, tasks = None, collisions = None,
+        inverse = "truncated", give_up = None, fallback = None, tasks = None, collisions = None,
         **parameters))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     #[expect(clippy::new_ret_no_self, reason = "tasks make a TaskServo")]
@@ -267,7 +267,7 @@ impl PyServo {
                 ("null_space", null_space != "exact"),
                 ("task", task.is_some()),
                 ("task_axes", task_axes.is_some()),
-                ("inverse", !["truncated", Method::of_servos().name()].contains(&inverse)),
+                ("inverse", inverse != "truncated"),
                 ("give_up", give_up.is_some()),
                 ("fallback", fallback.is_some()),
                 ("parameters", parameters.is_some_and(|p| !p.is_empty())),

@@ -164,14 +164,6 @@ impl Default for Method {
 }
 
 impl Method {
-    /// The default of servos: numerical filtering, exact away from singularities and smooth near them.
-    /// Measured against the others: `docs/guide/inverses.md`.
-    #[must_use]
-    pub fn of_servos() -> Self {
-        let is_filtering = |m: &Self| matches!(m, Self::NumericalFiltering { .. });
-        Self::ALL.into_iter().find(is_filtering).unwrap_or_default()
-    }
-
     /// The method of this name with its default parameters.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use cylindroid::inverse::{Inverse, TruncatedDirection};
 use cylindroid::linalg::Matrix;
-use cylindroid::{EndEffector, Error, Method, ReferenceFrame, Result, State, Twist};
+use cylindroid::{EndEffector, Error, ReferenceFrame, Result, State, Twist};
 use serde::Serialize;
 
 use crate::args::JacobianArgs;
@@ -67,11 +67,10 @@ pub(super) fn find(
     if args.twist.is_none() && !args.inverse.is_given() {
         return Ok(None);
     }
-    let name = args.inverse.name_or(Method::default());
     if args.analytical.is_some() {
         return Err(Error::InvalidOption {
             option: "--analytical",
-            value: name.to_owned(),
+            value: args.inverse.name().to_owned(),
             reason:
                 "inverses are those of the geometric Jacobian, whose task is a twist; omit the \
                      option"
@@ -79,8 +78,7 @@ pub(super) fn find(
         });
     }
     check_pitch(&args.inverse, None, "here", (state, tool, length))?;
-    let selection = selection(&args.inverse, Method::default(), None);
-    let choice = selection.choice(length).map_err(as_typed)?;
+    let choice = selection(&args.inverse, None).choice(length).map_err(as_typed)?;
     let twist = args.twist.map(|t| t.0);
     if let Some(twist) = twist {
         Error::check_finite("--twist", &twist)?;
@@ -92,8 +90,8 @@ pub(super) fn find(
     let Inverse { matrix, singular_values, rank, gap, threshold, dropped, exists, reason } =
         inverse;
     Ok(Some(InverseJson {
-        name: name.to_owned(),
-        parameters: parameters_in_effect(name, &args.inverse.parameters.0)?,
+        name: args.inverse.name().to_owned(),
+        parameters: parameters_in_effect(&args.inverse)?,
         exists,
         reason: reason.map(|r| r.to_string()),
         matrix: exists.then(|| matrix.to_rows()),

@@ -18,7 +18,7 @@ pub(crate) fn apply(
     let state = robot.state(start)?;
     let tool = (&state, options.end_effector, options.length);
     check_pitch(&args.named, fallback, "at the start", tool)?;
-    selection(&args.named, Method::of_servos(), fallback).apply(options).map_err(as_typed)
+    selection(&args.named, fallback).apply(options).map_err(as_typed)
 }
 
 /// The name of the inverse that the options mean, as it was asked for.

@@ -102,7 +102,7 @@ pub struct ServoOptions {
 
 impl ServoOptions {
     /// The defaults for a mechanism: its tool, or the reference of a closed chain; complete poses
-    /// (x, y and rz in the plane); 1 kHz; gains of 5/s; numerical filtering; the characteristic
+    /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the characteristic
     /// length of the mechanism; 20 rad/s^2 or m/s^2 where the model of a tree has no acceleration limit; twists
     /// that hold for 0.1 s.
     #[must_use]
@@ -119,7 +119,7 @@ impl ServoOptions {
                 position: tolerance::POSITION,
                 orientation: tolerance::ORIENTATION,
             },
-            method: Method::of_servos(),
+            method: Method::default(),
             projection: TaskProjection::Orthogonal,
             fallback: None,
             largest_projection: tolerance::MAX_PROJECTION_NORM,

@@ -48,7 +48,7 @@ fn change(servo: &Servo, before: &mut [f64]) -> f64 {
     pairs.map(|(now, before)| (now - std::mem::replace(before, *now)).abs()).sum()
 }
 
-/// The measurement behind `Method::of_servos`: targets that leave reach and come back, and random
+/// The measurement behind the default method of a servo: targets that leave reach and come back, and random
 /// targets within the limits by the servo alone.
 #[test]
 #[ignore = "a minute in a release build; the table of docs/guide/inverses.md"]

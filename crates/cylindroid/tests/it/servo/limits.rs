@@ -48,7 +48,6 @@ fn saturation_uses_the_other_joints() {
     let robot = b.build().unwrap();
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
-        o.method = Method::default(); // exact beside the direction that a plane has not
         o.acceleration = f64::INFINITY; // the first step is compared
         o.gain = ServoGains { position: 1.0, orientation: 1.0 };
     });
@@ -229,7 +228,6 @@ fn joint_weights_keep_joints_still() {
     let rates = |weights: Vec<f64>| {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
-            o.method = Method::default(); // exact beside the direction that a plane has not
             o.acceleration = f64::INFINITY; // the first step is compared
             o.joint_weights = weights;
         });
