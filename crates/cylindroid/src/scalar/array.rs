@@ -185,7 +185,7 @@ mod tests {
 
     /// Registers agree with arrays to the bit: rows of any length, any numbers.
     #[inline(always)]
-    fn as_arrays<R: Simd, const N: usize>(_: R::Cpu) {
+    fn as_arrays<R: SimdFloat, const N: usize>(_: R::Cpu) {
         for n in 0..=9 {
             for stride in [n, n + 1, n + 5] {
                 let from: Vec<f64> = (0..(N - 1) * stride + n).map(|i| i as f64 * 0.37).collect();
@@ -214,6 +214,14 @@ mod tests {
                 (swapped.0.1, swapped.1.1),
                 (a.negate_if_second_bit(c, 0), b.negate_if_second_bit(d, 0)),
                 (a.negate_if_second_bit(c, 1), b.negate_if_second_bit(d, 1)),
+                (a / c, b / d),
+                (a.abs().sqrt(), b.abs().sqrt()),
+                (c.copysign(a), d.copysign(b)),
+                (
+                    (c - R::splat(whole)).max(R::splat(0.5)),
+                    (d - Array::splat(whole)).max(Array::splat(0.5)),
+                ),
+                (R::select_lt(a, c, a, c), Array::select_lt(b, d, b, d)),
             ] {
                 assert_eq!(bits(&[a]), bits(&[b]), "{x:?} {y:?}");
             }

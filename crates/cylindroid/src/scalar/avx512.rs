@@ -8,11 +8,11 @@
 #![allow(unsafe_code)] // intrinsics
 
 use std::arch::x86_64::*;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::avx2::{Lanes4, operators, rows_in, rows_of, store_rest, store_rows, transposed_rows};
 use super::cpu::Avx512;
-use super::simd::Simd;
+use super::simd::{Simd, SimdFloat};
 use super::trig;
 
 /// The bit of the sign.
@@ -53,6 +53,50 @@ impl Neg for Lanes8 {
                 _mm512_set1_epi64(SIGN),
             ))
         })
+    }
+}
+
+impl Div for Lanes8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_div_pd(self.0, other.0) })
+    }
+}
+
+impl SimdFloat for Lanes8 {
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_sqrt_pd(self.0) })
+    }
+
+    #[inline(always)]
+    fn copysign(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let (a, b) = (_mm512_castpd_si512(self.0), _mm512_castpd_si512(other.0));
+            let sign = _mm512_set1_epi64(SIGN);
+            let both = _mm512_or_si512(_mm512_andnot_si512(sign, a), _mm512_and_si512(sign, b));
+            Self(_mm512_castsi512_pd(both))
+        }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see the head of this file.
+        Self(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn select_lt(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        // SAFETY: see the head of this file.
+        unsafe {
+            let less = _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a.0, b.0);
+            Self(_mm512_mask_blend_pd(less, otherwise.0, then.0))
+        }
     }
 }
 

@@ -2,9 +2,8 @@
 //!
 //! Shapes   a value holds [`Simd::LANES`] numbers; every operation acts on each lane alone, except
 //!          where it says otherwise
-//! Why so   three traits, because eight lanes are only needed for kinematics ([`Simd`]), division
-//!          and comparison for eliminations ([`SimdFloat`]), transposition for four lanes
-//!          ([`Simd4`])
+//! Why so   three traits, because kinematics needs sums and products only ([`Simd`]), eliminations
+//!          division and comparison ([`SimdFloat`]), and four lanes alone are transposed ([`Simd4`])
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -11,7 +11,7 @@
 use crate::linalg::batched::{round_robin_pairs, singular_values};
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
-use crate::scalar::{Avx2, Lanes4};
+use crate::scalar::{Avx2, Avx512, Lanes4, Lanes8};
 
 /// The shape and the scales.
 #[derive(Debug, Clone)]
@@ -40,15 +40,25 @@ impl SingularValues {
     /// The values of all Jacobians.
     pub(super) fn run(&self, jacobians: &[f64], out: &mut [f64]) {
         #[cfg(target_arch = "x86_64")]
-        if let Some(cpu) = Avx2::detect() {
-            #[allow(unsafe_code)] // the one way to call a function compiled for more
-            // SAFETY: the token proves that the processor has both features.
+        {
+            #[allow(unsafe_code)] // the one way to call functions compiled for more
+            // SAFETY: the tokens prove that the processor has these features.
             unsafe {
-                self.run_avx2(cpu, jacobians, out);
+                if let Some(cpu) = Avx512::detect() {
+                    return self.run_avx512(cpu, jacobians, out);
+                }
+                if let Some(cpu) = Avx2::detect() {
+                    return self.run_avx2(cpu, jacobians, out);
+                }
             }
-            return;
         }
         self.run_with::<Array<4>>((), jacobians, out);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx2,fma")]
+    fn run_avx512(&self, cpu: Avx512, jacobians: &[f64], out: &mut [f64]) {
+        self.run_with::<Lanes8>(cpu, jacobians, out);
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -65,16 +75,24 @@ impl SingularValues {
         let mut columns = vec![R::splat(0.0); long * k];
         let mut values = vec![R::splat(0.0); k];
         let mut tail = vec![0.0; R::LANES * k];
+        let mut entries = vec![R::splat(0.0); size];
+        let mut rest = vec![0.0; R::LANES * size];
         for (from, to) in jacobians.chunks(R::LANES * size).zip(out.chunks_mut(R::LANES * k)) {
-            // Lanes that are left over repeat the last Jacobian.
             let count = from.len() / size;
+            if count == R::LANES {
+                R::gather(from, size, &mut entries);
+            } else {
+                // Lanes that are left over repeat the last Jacobian.
+                for (lane, own) in rest.chunks_exact_mut(size).enumerate() {
+                    own.copy_from_slice(&from[lane.min(count - 1) * size..][..size]);
+                }
+                R::gather(&rest, size, &mut entries);
+            }
             for (i, (row, scale)) in self.rows.iter().enumerate() {
                 for (j, factor) in self.columns.iter().enumerate() {
-                    let entry = row * n + j;
-                    let x = R::from_fn(|lane| from[lane.min(count - 1) * size + entry]);
                     // The shorter side are the columns.
                     let place = if t <= n { i * n + j } else { j * t + i };
-                    columns[place] = x * R::splat(scale * factor);
+                    columns[place] = entries[row * n + j] * R::splat(scale * factor);
                 }
             }
             singular_values(&mut columns, long, &self.pairs, &mut values);
