@@ -15,6 +15,7 @@ mod shared;
 mod sweep;
 mod tasks;
 mod view;
+mod zone;
 pub(crate) use closed::{
     AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, MobilityArgs,
     StaticsArgs,
@@ -33,6 +34,7 @@ pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs, ModelArgs};
 pub(crate) use sweep::{AxisArg, Count, SweepArgs};
 pub(crate) use tasks::{FrameTaskArg, TasksArgs};
 pub(crate) use view::ViewArgs;
+pub(crate) use zone::ZoneArgs;
 
 use self::inverses::NamedInverseArgs;
 use crate::values::{Joints, Motion};
@@ -120,6 +122,9 @@ pub(crate) enum Command {
     /// The workspace in the platform's coordinates, per working mode, with singularity loci
     #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
     Map(Box<MapArgs>),
+    /// The largest ball or box without singularities around a configuration
+    #[command(long_about = zone::ABOUT, after_long_help = zone::EXAMPLES)]
+    Zone(Box<ZoneArgs>),
     /// The web viewer: display a model, drag its tool or object, and monitor its measures
     #[command(long_about = view::ABOUT, after_long_help = view::EXAMPLES)]
     View(Box<ViewArgs>),

@@ -84,8 +84,10 @@ fn typed(words: &[String]) -> Vec<(&str, Option<&str>)> {
 /// The flag of an option of the library, if it was typed.
 fn find(name: &str, flags: &[(&str, Option<&str>)]) -> Option<String> {
     let is_typed = |flag: &str| flags.iter().any(|(f, _)| *f == flag);
-    if let Some((_, flag, part)) = NAMES.iter().find(|(n, ..)| *n == name) {
-        return is_typed(flag).then(|| format!("{flag}{part}"));
+    if let Some((_, flag, part)) = NAMES.iter().find(|(n, ..)| *n == name)
+        && is_typed(flag)
+    {
+        return Some(format!("{flag}{part}"));
     }
     let flag = format!("--{}", name.replace(['_', ' '], "-"));
     is_typed(&flag).then_some(flag)

@@ -30,6 +30,7 @@ mod tasks;
 mod threads;
 mod view;
 mod workspace_map;
+mod zone;
 
 use pyo3::prelude::*;
 
@@ -119,6 +120,8 @@ mod _core {
     use crate::view::start::{has_page, start_view};
     #[pymodule_export]
     use crate::workspace_map::{PyWorkspaceMap, workspace_map};
+    #[pymodule_export]
+    use crate::zone::{PyZone, singularity_free_zone};
 
     use super::*;
 

@@ -19,6 +19,7 @@ pub(crate) mod shared;
 mod sweep;
 mod target;
 mod view;
+mod zone;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -46,6 +47,7 @@ pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
         Command::Sweep(args) => sweep::run(args, style, out),
         Command::Optimise(args) => optimise::run(args, style, out),
         Command::Map(args) => map::run(args, style, out),
+        Command::Zone(args) => zone::run(args, style, out),
         Command::View(args) => view::run(args, style, out),
         Command::Completions(args) => manual::completions(args, style, out),
         Command::Man(args) => manual::man(args, style, out),

@@ -188,6 +188,11 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["five-bar", "--over", "x=0:2:5", "--over", "y=0.5:2.5:5"],
             vec!["stewart", "--over", "x=-1:1:9", "--over", "y=-1:1:9"],
         ],
+        // One with a limit, and one with a component that is held.
+        "zone" => vec![
+            vec!["five-bar", "--components", "x,y", "--rays", "4"],
+            vec!["stewart", "--components", "x,y", "--rays", "2"],
+        ],
         "grasp" => vec![vec![GRASP, "--torsion", "0.01"]],
         "completions" => vec![vec!["bash"]],
         "man" => vec![vec![concat!(env!("CARGO_TARGET_TMPDIR"), "/man1")]],

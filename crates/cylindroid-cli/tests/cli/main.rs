@@ -26,6 +26,7 @@ mod sweep;
 mod tasks;
 mod view;
 mod xacro;
+mod zone;
 
 use std::process::{Command, Output};
 

@@ -103,6 +103,7 @@ __all__ = [
     "View",
     "WaypointMove",
     "WorkspaceMap",
+    "Zone",
     "__version__",
     "adjoint",
     "bracket",
@@ -142,6 +143,7 @@ __all__ = [
     "screw_to",
     "secondary_tasks",
     "selectively_damped",
+    "singularity_free_zone",
     "start_view",
     "transversals",
     "velocity_conversion",
@@ -2125,6 +2127,27 @@ class WorkspaceMap:
 
 def adjoint(a_from_b: ArrayLike) -> _Array: ...
 def bracket(a: ArrayLike, b: ArrayLike) -> _Array: ...
+@final
+class Zone:
+    @property
+    def shape(self) -> str: ...
+    @property
+    def size(self) -> float: ...
+    @property
+    def centre(self) -> dict[str, float]: ...
+    @property
+    def scales(self) -> dict[str, float]: ...
+    @property
+    def held(self) -> dict[str, float]: ...
+    @property
+    def bounds(self) -> list[dict[str, Any]]: ...
+    @property
+    def confirmed(self) -> int: ...
+    @property
+    def certified(self) -> int: ...
+    @property
+    def q(self) -> _Array: ...
+
 def catalogue() -> list[tuple[str, str, str]]: ...
 def coadjoint(a_from_b: ArrayLike) -> _Array: ...
 def damped(J: ArrayLike, damping: float) -> Inverse: ...
@@ -2243,6 +2266,20 @@ def selectively_damped(
 ) -> Inverse: ...
 def start_view(
     mechanism: Mechanism,
+def singularity_free_zone(
+    mechanism: Mechanism,
+    components: Sequence[str],
+    shape: str = "ball",
+    scales: Sequence[float] | None = None,
+    at: dict[str, float] | None = None,
+    free: Sequence[str] | None = None,
+    frame: str | None = None,
+    tool: ArrayLike | None = None,
+    q: ArrayLike | None = None,
+    limits: bool = True,
+    rays: int = 256,
+    seed: int = 0,
+) -> Zone: ...
     q: ArrayLike | None,
     frame: str | None,
     tool: ArrayLike | None,

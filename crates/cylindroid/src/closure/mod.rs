@@ -63,6 +63,7 @@ pub(crate) use position::{
     configuration_signature::{Landmarks, link_poses, signature_distance},
     initial_guesses::perturbed,
     loop_equations::LoopEquations,
+    nearest_singularity::CentredNorm,
     platform_path::{Obstruction, PathNode, PlatformPath},
     signed_singularity::SignedSingularity,
     singular_curve::{Curve, CurveDomain, CurveTracer, Vanishing},

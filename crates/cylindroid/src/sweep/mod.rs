@@ -49,7 +49,10 @@ pub use designs::{AxisKinds, DesignSpace, ParameterRange};
 pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
 pub use manifest::Part;
-pub use map::{Locus, LocusKind, Map, MapOptions, WorkingMode};
+pub use map::{
+    Locus, LocusKind, Map, MapOptions, WorkingMode, Zone, ZoneBound, ZoneComponent, ZoneOptions,
+    ZoneShape,
+};
 pub use optimise::{
     DesignObjective, OptimalDesign, Optimisation, OptimisationOptions, Optimum, Refinement, Sense,
     Statistic,

@@ -15,3 +15,4 @@ mod robots;
 #[allow(dead_code)] // of the helpers, a few are needed here
 #[path = "../it/support.rs"]
 mod support;
+mod zone;

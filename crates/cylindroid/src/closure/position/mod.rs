@@ -7,7 +7,7 @@
 //! from the random restarts of `initial_guesses`; `configuration_signature` distinguishes them.
 //! `platform` makes coordinates of the pose of an end effector, so that it can be prescribed.
 //! Maps move it with `platform_path` and follow `singular_curve`s, by the `loop_equations` and the
-//! `signed_singularity` of one mechanism.
+//! `signed_singularity` of one mechanism; zones end at the `nearest_singularity`.
 
 pub(crate) mod assembly;
 pub(crate) mod assembly_modes;
@@ -20,6 +20,8 @@ pub(crate) mod load;
 pub(crate) mod loop_closure;
 #[cfg(feature = "sweep")]
 pub(crate) mod loop_equations;
+#[cfg(feature = "sweep")]
+pub(crate) mod nearest_singularity;
 #[cfg(feature = "formats")]
 pub(crate) mod parametric_model;
 pub(crate) mod platform;

@@ -21,6 +21,7 @@ use super::loop_equations::LoopEquations;
 use super::signed_singularity::SignedSingularity;
 use crate::error::Result;
 use crate::linalg::{Matrix, Svd, norm};
+use crate::model::Mechanism;
 use crate::scalar::clamp;
 use crate::spatial::Vec3;
 use crate::tolerance::{LIMIT_MET, LOCUS_MET, LOCUS_STEP};
@@ -75,8 +76,8 @@ pub(crate) struct CurveTracer {
 }
 
 /// A point on a curve with the decomposition of the system there.
-struct CurvePoint {
-    q: Vec<f64>,
+pub(super) struct CurvePoint {
+    pub(super) q: Vec<f64>,
     a: Matrix,
     svd: Svd,
 }
@@ -115,6 +116,24 @@ impl CurveTracer {
 
     pub(crate) fn set_side(&mut self, side: Option<(SignedSingularity, f64)>) {
         self.domain.side = side;
+    }
+
+    pub(crate) fn set_vanishing(&mut self, vanishing: Vanishing) {
+        self.vanishing = vanishing;
+    }
+
+    pub(super) fn mechanism(&self) -> &Mechanism {
+        self.equations.mechanism()
+    }
+
+    /// The coordinates that are not held.
+    pub(super) fn unknown(&self) -> &[usize] {
+        &self.unknown
+    }
+
+    /// The change of a coordinate (m or rad) per unit of its scaled change.
+    pub(super) fn unit(&self, coordinate: usize) -> f64 {
+        self.equations.unit(coordinate)
     }
 
     /// The landmarks of a configuration.
@@ -310,13 +329,13 @@ impl CurveTracer {
     }
 
     /// The part of a vector in the kernel.
-    fn projected(&self, at: &CurvePoint, x: &[f64]) -> Vec<f64> {
+    pub(super) fn projected(&self, at: &CurvePoint, x: &[f64]) -> Vec<f64> {
         let back = at.svd.solve(&at.a.mul_vec(x), self.rank + 1);
         x.iter().zip(back).map(|(x, y)| x - y).collect()
     }
 
     /// Newton's method of least norm from a guess.
-    fn corrected(&mut self, mut q: Vec<f64>) -> Result<Option<CurvePoint>> {
+    pub(super) fn corrected(&mut self, mut q: Vec<f64>) -> Result<Option<CurvePoint>> {
         for _ in 0..MAX_NEWTON {
             let (a, b) = self.system(&q)?;
             let svd = Svd::of(&a);

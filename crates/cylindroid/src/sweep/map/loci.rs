@@ -52,15 +52,7 @@ impl Family {
         for (curve, modes) in self.curves.into_iter().zip(self.modes) {
             let middle = &curve.points[curve.points.len() / 2];
             let motion = self.tracer.motion(middle)?;
-            let moves = |i: &usize| motion[*i].abs() > LOCUS_AT_REST;
-            let mut kind = self.kind;
-            let coordinates = problem.platform.mechanism.coordinates();
-            if kind == LocusKind::TypeOne && !(0..n).any(|i| coordinates[i].actuated && moves(&i)) {
-                kind = LocusKind::Passive;
-            }
-            if kind == LocusKind::TypeTwo && !(n..motion.len()).any(|i| moves(&i)) {
-                kind = LocusKind::Passive;
-            }
+            let kind = kind_of(problem, self.kind, &motion);
             let on_axes = |q: &Vec<f64>| problem.axes.iter().map(|&i| q[i]).collect();
             loci.push(Locus {
                 kind,
@@ -72,6 +64,20 @@ impl Family {
             });
         }
         Ok(())
+    }
+}
+
+/// What happens at a singularity of type I or II with this motion: only passive joints may move.
+pub(super) fn kind_of(problem: &Problem, kind: LocusKind, motion: &[f64]) -> LocusKind {
+    let n = problem.platform.n();
+    let coordinates = problem.platform.mechanism.coordinates();
+    let moves = |i: usize| motion[i].abs() > LOCUS_AT_REST;
+    match kind {
+        LocusKind::TypeOne if !(0..n).any(|i| coordinates[i].actuated && moves(i)) => {
+            LocusKind::Passive
+        }
+        LocusKind::TypeTwo if !(n..motion.len()).any(moves) => LocusKind::Passive,
+        kind => kind,
     }
 }
 

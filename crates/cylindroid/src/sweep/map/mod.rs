@@ -2,7 +2,8 @@
 //! the loci of its singularities.
 //!
 //! Read in this order: `options`, `problem` (what is prescribed, what is singular), `grid`, `flood`
-//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves).
+//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves). `zone` is the largest
+//! ball or box around a configuration without singularities, found by `zone_search` with `zone_rays`.
 //!
 //! ```
 //! use cylindroid::sweep::{Axis, LocusKind, Map, MapOptions};
@@ -26,9 +27,13 @@ mod modes;
 mod options;
 mod problem;
 mod result;
+mod zone;
+mod zone_rays;
+mod zone_search;
 
 pub use options::MapOptions;
 pub use result::{Locus, LocusKind, WorkingMode};
+pub use zone::{Zone, ZoneBound, ZoneComponent, ZoneOptions, ZoneShape};
 
 use self::grid::Grid;
 use self::problem::Problem;

@@ -42,6 +42,8 @@ pub(super) struct Problem {
     pub(super) type_one: SignedSingularity,
     pub(super) type_two: SignedSingularity,
     pub(super) equations: LoopEquations,
+    /// At the start and nearby.
+    jacobians: Vec<Matrix>,
 }
 
 impl Problem {
@@ -115,21 +117,29 @@ impl Problem {
                 &jacobians,
             ),
             type_two: SignedSingularity::new(0..all, passive, &jacobians),
-            unknown_rank: rank(
-                &jacobians.iter().map(|j| j.rows_between(0, loops)).collect::<Vec<_>>(),
-                &unknown,
-            ),
+            unknown_rank: loop_rank(&jacobians, loops, &unknown),
             held,
             unknown,
             start,
             platform,
             equations,
+            jacobians,
         })
     }
 
     /// All prescribed coordinates: axes, then held ones.
     pub(super) fn prescribed(&self) -> Vec<usize> {
         self.axes.iter().copied().chain(self.held.iter().map(|(i, _)| *i)).collect()
+    }
+
+    /// Jacobians at the start and nearby, where loops close.
+    pub(super) fn jacobians(&self) -> &[Matrix] {
+        &self.jacobians
+    }
+
+    /// Generic rank of the loops over some coordinates.
+    pub(super) fn loop_rank(&self, unknown: &[usize]) -> usize {
+        loop_rank(&self.jacobians, self.equations.loop_rows(), unknown)
     }
 
     /// Motions that the prescribed components leave.
@@ -187,6 +197,11 @@ fn samples(mechanism: &Mechanism, start: &[f64]) -> Result<Vec<Matrix>> {
         }
     }
     Ok(all)
+}
+
+fn loop_rank(jacobians: &[Matrix], loops: usize, kept: &[usize]) -> usize {
+    let of_loops: Vec<Matrix> = jacobians.iter().map(|j| j.rows_between(0, loops)).collect();
+    rank(&of_loops, kept)
 }
 
 /// The largest rank of some columns.

@@ -1,0 +1,206 @@
+//! Singularity-free zones: the largest ball or box around a configuration.
+
+use cylindroid::sweep::{Zone, ZoneOptions, ZoneShape};
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arrays::Numbers;
+use crate::coordinates::Coordinates;
+use crate::error::{Result, argument, count, entry};
+use crate::mechanism::PyMechanism;
+
+/// A ball or box without singularities.
+///
+/// Attributes
+/// ----------
+/// shape : str
+///     'ball' or 'box'.
+/// size : float
+///     Radius of the ball, or half the side of the box, in multiples of the scales.
+/// centre, scales : dict of str to float
+///     The components in the centre and their scales (m or rad).
+/// held : dict of str to float
+///     Components of the pose that keep a value (m or rad).
+/// bounds : list of dict
+///     Singularities and limits nearest to the centre among their neighbours, the nearest first: 'kind'
+///     ('type I', 'type II', 'passive' or 'limit'), 'limit' (the coordinate or None), 'distance' (in
+///     multiples of the scales), 'point' (the components) and 'q' (the configuration). Empty if nothing
+///     was met up to half a turn or four characteristic lengths.
+/// confirmed, certified : int
+///     Rays from the centre of this length that met nothing, and those along which it is proven that
+///     there is none.
+/// q : ndarray, (n,)
+///     The configuration in the centre.
+#[pyclass(frozen, module = "cylindroid", name = "Zone")]
+#[derive(Debug)]
+pub(crate) struct PyZone {
+    zone: Zone,
+}
+
+#[pymethods]
+impl PyZone {
+    #[getter]
+    fn shape(&self) -> &'static str {
+        self.zone.shape.name()
+    }
+
+    #[getter]
+    fn size(&self) -> f64 {
+        self.zone.size
+    }
+
+    #[getter]
+    fn centre<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        named(py, self.zone.components.iter().map(|c| (&c.name, c.centre)))
+    }
+
+    #[getter]
+    fn scales<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        named(py, self.zone.components.iter().map(|c| (&c.name, c.scale)))
+    }
+
+    #[getter]
+    fn held<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        named(py, self.zone.held.iter().map(|(name, value)| (name, *value)))
+    }
+
+    #[getter]
+    fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let bounds = PyList::empty(py);
+        for bound in &self.zone.bounds {
+            let dict = PyDict::new(py);
+            dict.set_item("kind", bound.kind.name())?;
+            dict.set_item("limit", bound.limit.as_deref())?;
+            dict.set_item("distance", bound.distance)?;
+            dict.set_item("point", bound.point.clone().into_pyarray(py))?;
+            dict.set_item("q", bound.q.clone().into_pyarray(py))?;
+            bounds.append(dict)?;
+        }
+        Ok(bounds)
+    }
+
+    #[getter]
+    fn confirmed(&self) -> usize {
+        self.zone.confirmed
+    }
+
+    #[getter]
+    fn certified(&self) -> usize {
+        self.zone.certified
+    }
+
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
+        self.zone.q.clone().into_pyarray(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let names: Vec<&str> = self.zone.components.iter().map(|c| c.name.as_str()).collect();
+        let (shape, size) = (self.zone.shape.name(), self.zone.size);
+        let bound = self.zone.bounds.first().map_or("nothing", |bound| bound.kind.name());
+        format!("Zone({shape} over {}: {size:.6}, bounded by {bound})", names.join(", "))
+    }
+}
+
+fn named<'py, 'a>(
+    py: Python<'py>,
+    values: impl Iterator<Item = (&'a String, f64)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, value) in values {
+        dict.set_item(name, value)?;
+    }
+    Ok(dict)
+}
+
+/// The largest ball or box around a configuration without singularities, in components of the
+/// platform's pose or in coordinates of actuated joints.
+///
+/// Rays from the centre follow the mode of `q` to the first singularity or position limit; from there
+/// the nearest point is found by descent on the locus, to rounding. The smallest distance is the size:
+/// nothing larger is free. That nothing is nearer is proven only along the rays that are counted as
+/// certified.
+///
+/// Parameters
+/// ----------
+/// mechanism : Mechanism
+/// components : sequence of str
+///     Of 'x', 'y', 'z', 'roll', 'pitch', 'yaw' (`R = Rz(yaw) Ry(pitch) Rx(roll)`), in the plane 'x',
+///     'y', 'rz'; or names of actuated joints.
+/// shape : str
+///     'ball', or 'box' with sides along the components.
+/// scales : sequence of float, optional
+///     The lengths of the ball's axes, or half the sides of the box, for a size of 1 (m or rad).
+///     Default: 1; of lengths beside angles the characteristic length.
+/// at : dict of str to float, optional
+///     Values of components in the centre [m or rad], of the zone or others; other components as for
+///     `workspace_map`.
+/// free : sequence of str, optional
+///     Components of the pose that may have any value.
+/// frame : str, optional
+///     The platform. Default: the reference of a closed chain, otherwise the tool.
+/// tool : array_like, (4, 4), optional
+///     `frame_from_tool`, a tool point fixed to the frame.
+/// q : array_like, (n,), optional
+///     The configuration in the centre. Default: home.
+/// limits : bool
+///     Position limits are bounds too.
+/// rays : int
+///     Number of rays beside those along the components.
+/// seed : int
+///     Selects other rays.
+///
+/// Returns
+/// -------
+/// Zone
+///
+/// Raises
+/// ------
+/// InvalidOptionError, UnknownNameError, DimensionError, NotFiniteError
+///
+/// Examples
+/// --------
+/// >>> import cylindroid as cy
+/// >>> cy.singularity_free_zone(cy.load("3r"), ["joint2", "joint3"], rays=32)
+/// Zone(ball over joint2, joint3: 1.000000, bounded by type I)
+#[pyfunction]
+#[pyo3(signature = (mechanism, components, shape = "ball", scales = None, at = None, free = None,
+    frame = None, tool = None, q = None, limits = true, rays = 256, seed = 0))]
+#[expect(clippy::too_many_arguments, reason = "they have names in Python")]
+pub(crate) fn singularity_free_zone<'py>(
+    py: Python<'py>,
+    #[pyo3(from_py_with = argument)] mechanism: PyRef<'py, PyMechanism>,
+    #[pyo3(from_py_with = argument)] components: Vec<String>,
+    #[pyo3(from_py_with = argument)] shape: &str,
+    #[pyo3(from_py_with = argument)] scales: Option<Vec<f64>>,
+    #[pyo3(from_py_with = argument)] at: Option<Bound<'py, PyDict>>,
+    #[pyo3(from_py_with = argument)] free: Option<Vec<String>>,
+    #[pyo3(from_py_with = argument)] frame: Option<&str>,
+    tool: Option<Numbers<'py>>,
+    q: Option<Coordinates<'py>>,
+    #[pyo3(from_py_with = argument)] limits: bool,
+    #[pyo3(from_py_with = count)] rays: usize,
+    #[pyo3(from_py_with = argument)] seed: u64,
+) -> Result<PyZone> {
+    let robot = &*mechanism;
+    let mechanism = robot.inner.clone();
+    let mut held: Vec<(String, Option<f64>)> = Vec::new();
+    for (name, value) in at.iter().flat_map(|at| at.iter()) {
+        held.push((entry("at", &name)?, Some(entry("at", &value)?)));
+    }
+    held.extend(free.unwrap_or_default().into_iter().map(|name| (name, None)));
+    let options = ZoneOptions {
+        components,
+        scales: scales.unwrap_or_default(),
+        shape: ZoneShape::named(shape)?,
+        held,
+        end_effector: Some(robot.reference_or_tool(frame, tool.as_ref())?),
+        start: q.as_ref().map(|q| q.vector(&mechanism, "q").map(<[f64]>::to_vec)).transpose()?,
+        limits,
+        rays,
+        seed,
+    };
+    let zone = py.detach(|| Zone::of(&mechanism, options))?;
+    Ok(PyZone { zone })
+}
