@@ -5,6 +5,7 @@ mod own_columns;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use cylindroid::Vec3;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, AxisKinds, DesignSpace, ParameterRange, Part, Quantity, SharedFolder, Source, Summary,
@@ -109,7 +110,8 @@ impl PySweepPlan {
     #[new]
     #[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None,
         configurations = None, quantities = None, frame = None, tool = None, task = None,
-        metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new()))]
+        metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new(),
+        direction = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
@@ -127,6 +129,7 @@ impl PySweepPlan {
         #[pyo3(from_py_with = argument)] vary: Option<Bound<'_, PyDict>>,
         #[pyo3(from_py_with = argument)] designs: u64,
         #[pyo3(from_py_with = argument)] columns: Vec<Given>,
+        direction: Option<Numbers<'_>>,
     ) -> Result<Self> {
         let robot = &*mechanism;
         let mechanism = robot.inner.clone();
@@ -162,6 +165,10 @@ impl PySweepPlan {
             task: task.map(|name| Task::named(name, &mechanism)).transpose()?,
             metric: VelocityMetric::named(metric)?,
             length,
+            direction: match &direction {
+                Some(direction) => Vec3::from_array(direction.entries("direction")?),
+                None => SweepOptions::default().direction,
+            },
             part_rows: if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS },
         };
         let sweep = match space {

@@ -38,6 +38,19 @@ def test_columns_are_those_of_single_calls():
         assert np.array_equal(same[name], values, equal_nan=values.dtype == float), name
 
 
+def test_payloads_reach_a_limit():
+    robot = cy.load("panda")
+    found = cy.sweep(robot, samples=50, quantities=["payload", "jacobian"], direction=[0.0, 0, 2])
+    names = robot.joint_names
+    torques = np.stack([found[f"jacobian_vz_{name}"] for name in names], 1) * found["payload"][:, None]
+    effort = np.array([87.0] * 4 + [12.0] * 3)
+    assert np.allclose((abs(torques) / effort).max(1), 1, atol=1e-12)
+    with pytest.raises(cy.InvalidOptionError, match="direction"):
+        cy.sweep(robot, samples=2, quantities=["payload"], direction=[0.0, 0, 0])
+    with pytest.raises(cy.DimensionError, match="direction"):
+        cy.sweep(robot, samples=2, quantities=["payload"], direction=[0.0, 1.0])
+
+
 def test_threads_change_nothing():
     robot = cy.load("panda")
     a, b = (cy.sweep(robot, samples=100_000, threads=k) for k in (1, 3))

@@ -8,7 +8,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 use cylindroid::sweep::{Axis, ParameterRange, VelocityMetric};
 
 use super::{FrameArgs, ModelArgs};
-use crate::values::Joints;
+use crate::values::{Joints, Numbers};
 
 pub(crate) const ABOUT: &str = "\
 Quantities of millions of configurations: samples within the limits, grids, or a file
@@ -40,10 +40,11 @@ Quantities:
   condition                the largest over the smallest of them
   yoshikawa                sqrt(det J J^T), in --metric
   limit_distance           smallest distance to a position limit, negative outside
+  payload                  largest force along --direction [N] within the effort limits, without weight
   gibson_hunt              class and principal pitches of the screw system
   measures                 mobility, distances to singularities, kinematic efficiencies, in --metric
 
-For closed chains: pose, limit_distance and measures, of --configurations. Exit code 130 after an \
+For closed chains: pose, limit_distance, payload and measures, of --configurations. Exit code 130 after an \
 interrupt.";
 
 #[derive(Debug, Args)]
@@ -110,6 +111,10 @@ pub(crate) struct SweepArgs {
     /// Characteristic length [m] [default: that of the model, see `info`]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) length: Option<f64>,
+
+    /// Direction of the force of payload, in world axes [default: 0,0,-1]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) direction: Option<Numbers<3>>,
 
     /// Folder of the Parquet files, or a file that ends in .csv
     #[arg(long, value_name = "DIR")]

@@ -1866,6 +1866,7 @@ class SweepPlan:
         designs: int = 0,
         columns: Sequence[tuple[str, str, str, Callable[..., ArrayLike]]] = ...,
     ) -> SweepPlan: ...
+        direction: ArrayLike | None = None,
     @property
     def parts(self) -> int: ...
     @property

@@ -78,6 +78,7 @@ def sweep(
     designs: int = 0,
     columns: Mapping[str, Callable[..., ArrayLike] | SweepColumn] | None = None,
     engine: str | concurrent.futures.Executor | None = None,
+    direction: ArrayLike | None = None,
 ) -> Any:
     """Quantities of many configurations: samples within the limits, a grid, or configurations.
 
@@ -106,14 +107,14 @@ def sweep(
         any order.
     quantities : sequence of str
         Of 'pose', 'jacobian', 'singular_values', 'smallest_singular_value', 'condition',
-        'yoshikawa', 'limit_distance', 'gibson_hunt', 'measures'; of closed chains 'pose',
-        'limit_distance' and 'measures'.
+        'yoshikawa', 'limit_distance', 'payload', 'gibson_hunt', 'measures'; of closed chains
+        'pose', 'limit_distance', 'payload' and 'measures'.
     frame : str, optional
         One of `frames`. Default: the tool, of a closed chain its reference.
     tool : array_like, (4, 4), optional
         `frame_from_tool`, a tool point fixed to the frame.
     task : str, optional
-        The components that the measures of the Jacobian see, world axes: 'pose', 'position',
+        The components that measures and those of the Jacobian see, world axes: 'pose', 'position',
         'orientation', or some of 'x,y,z,rx,ry,rz'. Default: 'pose'.
     metric : str
         Of 'yoshikawa' and 'measures': 'unit', 'length' or 'limits', as for `manipulability`.
@@ -134,6 +135,8 @@ def sweep(
     columns : dict of str to callable or SweepColumn, optional
         Own columns, after those of the quantities: functions of the configurations of a part, `(N, n)`,
         and the names of the coordinates, which return N numbers. Not of designs.
+    direction : array_like, (3,), optional
+        Of the force of 'payload', in world axes. Default: down.
     engine : 'ray' or concurrent.futures.Executor, optional
         Computes the parts: the Ray cluster that is connected, otherwise that of `ray.init()`, or any
         executor. Files and manifest are to the byte those of one machine. Arguments are pickled; workers
@@ -198,6 +201,7 @@ def sweep(
         "vary": vary,
         "designs": designs,
         "columns": own,
+        "direction": direction,
     }
     plan = SweepPlan(**arguments)
     if not isinstance(resume, (bool, np.bool_)):

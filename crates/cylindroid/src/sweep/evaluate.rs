@@ -9,6 +9,7 @@ use std::ops::Range;
 use std::slice::IterMut;
 
 use super::options::{SweepOptions, VelocityMetric};
+use super::payload::Payload;
 use super::quantity::{PITCHES, Quantity};
 use super::singular_values::SingularValues;
 use super::source::Configurations;
@@ -41,6 +42,7 @@ pub(super) struct Evaluator {
     /// Of the Jacobian with linear rows over the length.
     scaled: SingularValues,
     yoshikawa: Volume,
+    payload: Option<Payload>,
     measures: Option<ManipulabilityBatch>,
 }
 
@@ -82,6 +84,11 @@ impl Evaluator {
         } else {
             Volume::Factor(1.0)
         };
+        let payload = if wants(Quantity::Payload) {
+            Some(Payload::new(mechanism, end_effector, options.direction)?)
+        } else {
+            None
+        };
         let measures = if wants(Quantity::Measures) {
             Some(measures(mechanism, options, end_effector, length)?)
         } else {
@@ -96,6 +103,7 @@ impl Evaluator {
             kinematics: KinematicsBatch::new(mechanism, end_effector),
             scaled,
             yoshikawa,
+            payload,
             measures,
         })
     }
@@ -199,6 +207,21 @@ impl Evaluator {
                 Q::LimitDistance => {
                     extend(columns, q.chunks_exact(n).map(|q| self.limit_distance(q)));
                 }
+                Q::Payload => match &self.payload {
+                    Some(payload) if payload.of_jacobian() => {
+                        let rows = jacobians.chunks_exact(6 * n);
+                        extend(columns, rows.map(|j| payload.at_jacobian(j)));
+                    }
+                    payload => {
+                        let Some(payload) = payload else { continue };
+                        let mut own = Vec::with_capacity(count);
+                        for (i, q) in q.chunks_exact(n).enumerate() {
+                            let found = payload.at(&self.mechanism, self.end_effector, q);
+                            own.push(found.map_err(|error| at_row(error, start + i as u64))?);
+                        }
+                        extend(columns, own.into_iter());
+                    }
+                },
                 Q::GibsonHunt => self.screws(jacobians, start, columns)?,
                 Q::Measures => self.measure(q, start, columns)?,
             }
@@ -282,7 +305,9 @@ impl Scratch {
         let of_values = [Q::SingularValues, Q::SmallestSingularValue, Q::Condition];
         let scaled = e.wants(&of_values)
             || (e.wants(&[Q::Yoshikawa]) && matches!(e.yoshikawa, Volume::Factor(_)));
-        let jacobians = scaled || e.wants(&[Q::Jacobian, Q::GibsonHunt, Q::Yoshikawa]);
+        let of_jacobian = e.payload.as_ref().is_some_and(Payload::of_jacobian);
+        let jacobians =
+            scaled || of_jacobian || e.wants(&[Q::Jacobian, Q::GibsonHunt, Q::Yoshikawa]);
         let size = |used: bool, each: usize| vec![0.0; if used { rows * each } else { 0 }];
         Self {
             count: 0,

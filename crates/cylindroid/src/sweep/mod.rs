@@ -36,6 +36,7 @@ mod own_columns;
 mod parquet_file;
 mod parquet_input;
 mod parts;
+mod payload;
 mod quantity;
 mod recipe;
 mod shared_folder;

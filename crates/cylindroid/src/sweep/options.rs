@@ -5,6 +5,7 @@ use super::quantity::Quantity;
 use super::source::Source;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
+use crate::spatial::Vec3;
 use crate::task::Task;
 
 /// Rows of a part by default.
@@ -28,6 +29,8 @@ pub struct SweepOptions {
     pub metric: VelocityMetric,
     /// Characteristic length (m): that of the mechanism by default.
     pub length: Option<f64>,
+    /// The direction of [`Quantity::Payload`] in world axes, of any length: down by default.
+    pub direction: Vec3,
     /// Rows of a part, the unit of work and the file of [`Sweep::write`](super::Sweep::write).
     pub part_rows: u64,
 }
@@ -42,6 +45,7 @@ impl Default for SweepOptions {
             task: None,
             metric: VelocityMetric::Unit,
             length: None,
+            direction: Vec3::new(0.0, 0.0, -1.0),
             part_rows: PART_ROWS,
         }
     }

@@ -28,6 +28,10 @@ pub enum Quantity {
     Yoshikawa,
     /// Smallest distance to a position limit; negative outside.
     LimitDistance,
+    /// Largest force at the frame's origin along [`SweepOptions::direction`](super::SweepOptions)
+    /// that the actuated joints balance within their effort limits, without own weight and inertia;
+    /// of closed chains too. Infinite where the structure alone bears it.
+    Payload,
     /// Gibson-Hunt class and principal pitches of the screw system of the Jacobian's columns.
     GibsonHunt,
     /// Mobility counts, distances to singularities and kinematic efficiencies, as in
@@ -37,7 +41,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Pose,
         Self::Jacobian,
         Self::SingularValues,
@@ -45,6 +49,7 @@ impl Quantity {
         Self::Condition,
         Self::Yoshikawa,
         Self::LimitDistance,
+        Self::Payload,
         Self::GibsonHunt,
         Self::Measures,
     ];
@@ -60,6 +65,7 @@ impl Quantity {
             Self::Condition => "condition",
             Self::Yoshikawa => "yoshikawa",
             Self::LimitDistance => "limit_distance",
+            Self::Payload => "payload",
             Self::GibsonHunt => "gibson_hunt",
             Self::Measures => "measures",
         }
@@ -78,6 +84,9 @@ impl Quantity {
             Self::Condition => "largest over smallest of these singular values",
             Self::Yoshikawa => "Yoshikawa's measure sqrt(det J J^T) in the metric",
             Self::LimitDistance => "smallest distance to a position limit, negative outside",
+            Self::Payload => {
+                "largest force along the direction within the effort limits, without weight"
+            }
             Self::GibsonHunt => "Gibson-Hunt class and principal pitches of the screw system",
             Self::Measures => {
                 "mobility counts, distances to singularities and kinematic efficiencies"
@@ -107,7 +116,7 @@ impl Quantity {
 
     /// True if loops do not invalidate it: the others are of the Jacobian of the spanning tree.
     pub(super) const fn has_loops(self) -> bool {
-        matches!(self, Self::Pose | Self::LimitDistance | Self::Measures)
+        matches!(self, Self::Pose | Self::LimitDistance | Self::Payload | Self::Measures)
     }
 
     /// Its columns; `values`: number of singular values.
@@ -141,6 +150,7 @@ impl Quantity {
             Self::SmallestSingularValue | Self::Condition => vec![number(self.name(), "1")],
             Self::Yoshikawa => vec![number(self.name(), "m and rad, of the metric")],
             Self::LimitDistance => vec![number(self.name(), "rad or m, of the joint")],
+            Self::Payload => vec![number(self.name(), "N")],
             Self::GibsonHunt => {
                 let class = Column::text(self.name(), self.description());
                 let pitch = |i| number(&format!("principal_pitch_{i}"), "m/rad");

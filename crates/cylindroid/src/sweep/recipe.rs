@@ -14,6 +14,7 @@ use super::designs::{DesignSpace, Designs, ParameterRange};
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
 use super::own_columns::OwnColumn;
+use super::quantity::Quantity;
 use super::source::{Axis, Source};
 use crate::model::Mechanism;
 
@@ -52,6 +53,9 @@ impl Recipe {
             "metric": options.metric.name(),
             "length": evaluator.length,
         }));
+        if options.quantities.contains(&Quantity::Payload) {
+            recipe.0["direction"] = json!(options.direction.to_array());
+        }
         if !options.columns.is_empty() {
             let own = |c: &OwnColumn| json!({"name": c.name, "unit": c.unit, "version": c.version});
             recipe.0["own_columns"] = options.columns.iter().map(own).collect();

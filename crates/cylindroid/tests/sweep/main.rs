@@ -12,6 +12,7 @@ mod folder;
 mod optimise;
 mod own_columns;
 mod parts;
+mod payload;
 mod pinocchio;
 mod quantities;
 mod sampling;

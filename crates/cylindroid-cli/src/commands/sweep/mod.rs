@@ -9,11 +9,11 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use cylindroid::Error;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, DesignSpace, ParameterRange, Progress, Quantity, Sweep, SweepOptions, WriteOptions,
 };
+use cylindroid::{Error, Vec3};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::report::{Head, Outcome};
@@ -45,6 +45,9 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         task,
         metric: args.metric.metric(),
         length: args.length,
+        direction: args
+            .direction
+            .map_or(SweepOptions::default().direction, |d| Vec3::from_array(d.0)),
         part_rows: args.part_rows.map_or(part_rows, |count| count.0),
     };
     let sweep = match space {
