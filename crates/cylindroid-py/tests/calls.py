@@ -383,11 +383,11 @@ def calls():
          {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
           "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,
           "loci": False}),
-        ("show", shown,
         ("singularity_free_zone", cy.singularity_free_zone,
          {"mechanism": PLANAR, "components": ["x", "y"], "shape": "box", "scales": [1.0, 0.5],
           "at": {"rz": 0.1}, "free": None, "frame": PLANAR.reference, "tool": np.eye(4),
           "q": PLANAR.home, "limits": False, "rays": 4, "seed": 1}),
+        ("show", shown,
          {"mechanism": PANDA, "q": PANDA.home, "frame": "flange", "tool": np.eye(4),
           "open": False, "height": 600, "host": "127.0.0.1", "port": 0, "meshes": (),
           "frame_ancestors": "http://localhost:8888"}),
@@ -468,7 +468,7 @@ def methods(grip):
         ("ordered", PANDA, n),
         ("outside_limits", PANDA, n),
         ("distances", PANDA, {**n, "margin": 0.2, "srdf": None, "meshes": "convex_hull"}),
-        ("measures", FIVE_BAR, {**BARS, **WEIGHTS, "metric": "unit", "length": 1.0}),
+        ("measures", FIVE_BAR, {**BARS, **WEIGHTS, "metric": "unit", "length": 1.0, "task": "x,y,rz"}),
     ]
 
 

@@ -161,6 +161,13 @@ def test_measures_are_the_numbers_of_reports():
         again = r.measures(Q, **given)
         assert all(np.array_equal(again[name], found[name]) for name in found), given
     assert found["dof"].dtype.kind == "i" and found["closed"].dtype == bool
+    of_task = r.measures(Q, task="x,y", metric="length")
+    for i, q in enumerate(Q):
+        k = r.manipulability(q, task="x,y", metric="length").kinematic
+        np.testing.assert_allclose(of_task["volume"][i], k.volume, rtol=1e-10)
+    np.testing.assert_array_equal(r.measures(Q, task=[[1, 0, 0], [0, 1, 0]])["type_i"], of_task["type_i"])
+    with pytest.raises(cy.UnknownNameError, match="component"):
+        r.measures(Q, task="x,q")
     one = r.measures(Q[0])
     assert one["dof"] == 2 and isinstance(one["volume"], float)
     assert all(len(x) == 0 for x in r.measures(np.zeros((0, 4))).values())

@@ -195,12 +195,12 @@ pub(crate) struct ManipulabilityArgs {
     pub(crate) gradient: Option<MeasureName>,
 
     /// In place of one configuration those of a .csv, .json or .parquet file, a row each [rad or m]:
-    /// mobility, distances to singularities and measures of motion as numbers. Columns with names,
+    /// mobility, distances to singularities and measures of motion as numbers, those of --task if
+    /// it is given. Columns with names,
     /// those of Parquet and of a first line of CSV, may be in any order; other columns are ignored,
     /// as in the files of `move --out`
     #[arg(long, value_name = "FILE", conflicts_with_all = [
-        "q", "degrees", "ww", "wtau", "wt", "task", "task_map", "polytope", "torque_limits", "gradient",
-        "plot",
+        "q", "degrees", "ww", "wtau", "wt", "polytope", "torque_limits", "gradient", "plot",
     ])]
     pub(crate) configurations: Option<PathBuf>,
 

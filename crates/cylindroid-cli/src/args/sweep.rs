@@ -98,7 +98,7 @@ pub(crate) struct SweepArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// Components of the twist that the measures of the Jacobian see: pose, position, orientation,
+    /// Components of the twist that measures and those of the Jacobian see: pose, position, orientation,
     /// or a list of x,y,z,rx,ry,rz, in world axes [default: pose]
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Option<String>,

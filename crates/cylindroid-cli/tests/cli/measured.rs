@@ -214,6 +214,21 @@ fn many_configurations() {
             close(name, &measures[name]);
         }
     }
+    // Of a task, whose numbers are those of its single calls too.
+    let of_task =
+        json(&with(&["--configurations", FILE, "--task", "x,y", "--metric", "length"]), 0);
+    assert_eq!(of_task["components"], serde_json::json!(["x", "y"]));
+    let single = with(&["--task", "x,y", "--metric", "length", "--q", "-0.2,0.1,0,0.01"]);
+    let measures = &json(&single, 0)["measures"]["kinematic"];
+    for name in ["volume", "largest", "smallest", "anisotropy"] {
+        let place = columns.iter().position(|c| *c == name).unwrap();
+        let got = of_task["rows"][1][place].as_f64().unwrap();
+        assert!((got / measures[name].as_f64().unwrap() - 1.0).abs() < 1e-12, "{name}: {got}");
+    }
+    let table = text(&with(&["--configurations", FILE, "--task", "x,y"]));
+    assert!(table.contains("task") && table.contains("x, y"), "{table}");
+    let message = refused(&with(&["--configurations", FILE, "--task", "x,q"]));
+    assert!(message.contains("no component named 'q'"), "{message}");
     let table = text(&with(&["--configurations", FILE]));
     assert!(table.contains("dof 2") && table.contains("closure_distance"), "{table}");
 

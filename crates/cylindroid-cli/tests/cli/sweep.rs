@@ -39,6 +39,31 @@ fn statistics_of_samples_and_grids() {
     assert_eq!(count, 100);
 }
 
+/// The payload of a direction, and of a task the measures.
+#[test]
+fn payloads_and_tasks() {
+    let stretched = ["sweep", "panda", "--samples", "64", "--quantities", "payload"];
+    let column = |extra: &[&str]| {
+        let report = json(&[&stretched[..], extra].concat(), 0);
+        let columns = report["columns"].as_array().unwrap();
+        let own = columns.iter().find(|c| c["name"] == "payload").unwrap();
+        assert_eq!(own["unit"], "N");
+        own["smallest"].as_f64().unwrap()
+    };
+    let down = column(&[]);
+    assert!(down > 0.0 && down == column(&["--direction", "0,0,2"]));
+    assert!(down != column(&["--direction", "1,0,0"]));
+    let message = refused(&[&stretched[..], &["--direction", "0,0,0"]].concat());
+    assert!(message.contains("no length"), "{message}");
+    let of_task = ["sweep", "3r", "--over", "joint3=-1:1:3", "--task", "x,y,z"];
+    let report = json(&[&of_task[..], &["--quantities", "measures"]].concat(), 0);
+    let columns = report["columns"].as_array().unwrap();
+    let type_i = columns.iter().find(|c| c["name"] == "type_i").unwrap();
+    // Straight in the middle.
+    assert_eq!(type_i["smallest"], 0.0);
+    assert!(type_i["largest"].as_f64().unwrap() > 0.05);
+}
+
 /// Columns by the names of the joints, in any order, in CSV and Parquet.
 #[test]
 fn configurations_of_files() {

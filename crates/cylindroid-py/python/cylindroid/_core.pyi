@@ -1012,6 +1012,7 @@ class Mechanism:
         Wq: ArrayLike | None = None,
         metric: str = "unit",
         length: float | None = None,
+        task: str | Sequence[str] | ArrayLike | None = None,
     ) -> dict[str, Any]: ...
     def manipulability_gradient(
         self,
@@ -1865,8 +1866,8 @@ class SweepPlan:
         vary: dict[str, tuple[float, float]] | None = None,
         designs: int = 0,
         columns: Sequence[tuple[str, str, str, Callable[..., ArrayLike]]] = ...,
-    ) -> SweepPlan: ...
         direction: ArrayLike | None = None,
+    ) -> SweepPlan: ...
     @property
     def parts(self) -> int: ...
     @property
@@ -2126,8 +2127,6 @@ class WorkspaceMap:
     @property
     def loci(self) -> list[dict[str, Any]]: ...
 
-def adjoint(a_from_b: ArrayLike) -> _Array: ...
-def bracket(a: ArrayLike, b: ArrayLike) -> _Array: ...
 @final
 class Zone:
     @property
@@ -2149,6 +2148,8 @@ class Zone:
     @property
     def q(self) -> _Array: ...
 
+def adjoint(a_from_b: ArrayLike) -> _Array: ...
+def bracket(a: ArrayLike, b: ArrayLike) -> _Array: ...
 def catalogue() -> list[tuple[str, str, str]]: ...
 def coadjoint(a_from_b: ArrayLike) -> _Array: ...
 def damped(J: ArrayLike, damping: float) -> Inverse: ...
@@ -2265,8 +2266,6 @@ def secondary_tasks() -> list[dict[str, Any]]: ...
 def selectively_damped(
     J: ArrayLike, task: ArrayLike, max_joint_velocity: float = 0.7853981633974483
 ) -> Inverse: ...
-def start_view(
-    mechanism: Mechanism,
 def singularity_free_zone(
     mechanism: Mechanism,
     components: Sequence[str],
@@ -2281,6 +2280,8 @@ def singularity_free_zone(
     rays: int = 256,
     seed: int = 0,
 ) -> Zone: ...
+def start_view(
+    mechanism: Mechanism,
     q: ArrayLike | None,
     frame: str | None,
     tool: ArrayLike | None,

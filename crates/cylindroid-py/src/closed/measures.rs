@@ -42,8 +42,11 @@ impl PyMechanism {
     ///     Coordinates in the order of `joint_names` [rad or m].
     /// actuated, reference
     ///     As for `constraint`.
+    /// task : str, list of str or array_like, (k, d), optional
+    ///     Components of the twist that form the task ('x,y'), or a linear map of the twist, as for
+    ///     `manipulability`: counts, distances of type I and II and efficiencies are then its own.
     /// Wu, Wq : array_like, square or their diagonals, optional
-    ///     Metrics of twists and joint velocities, as for `manipulability`.
+    ///     Metrics of twists (or the task) and joint velocities, as for `manipulability`.
     /// metric : str
     ///     'unit', 'length' or 'limits', as for `manipulability`.
     /// length : float, optional
@@ -76,7 +79,7 @@ impl PyMechanism {
     /// >>> found["dof"]
     /// array([6, 6])
     #[pyo3(signature = (q, actuated = None, reference = None, Wu = None, Wq = None,
-        metric = "unit", length = None))]
+        metric = "unit", length = None, task = None))]
     #[expect(non_snake_case, reason = "the field's names")]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn measures<'py>(
@@ -89,13 +92,14 @@ impl PyMechanism {
         Wq: Option<Numbers<'py>>,
         #[pyo3(from_py_with = argument)] metric: &str,
         #[pyo3(from_py_with = argument)] length: Option<f64>,
+        #[pyo3(from_py_with = argument)] task: Option<Bound<'py, PyAny>>,
     ) -> Result<Bound<'py, PyDict>> {
         let actuated = actuated.map(|names| self.inner.with_actuated(&names)).transpose()?;
         let mechanism = actuated.as_ref().unwrap_or(&self.inner);
         let rows = Rows::of(mechanism, "q", &q)?;
         let home = PyConstraint::of(mechanism, mechanism.home(), reference, length)?;
-        let question =
-            Question::about(&home, None, [Wu.as_ref(), Wq.as_ref(), None, None], metric)?;
+        let weights = [Wu.as_ref(), Wq.as_ref(), None, None];
+        let question = Question::about(&home, task.as_ref(), weights, metric)?;
         let metrics = question.metrics(&home)?;
         let reference = match &home.origin {
             Some(origin) => origin.reference,
@@ -104,7 +108,8 @@ impl PyMechanism {
         let about = (reference, home.inner.length());
         let count = rows.count.unwrap_or(1);
         let numbers = threads::run(py, count > ManipulabilityBatch::CHUNK, || {
-            let options = BatchOptions { metrics, ..BatchOptions::default() };
+            let task = question.map;
+            let options = BatchOptions { metrics, task, ..BatchOptions::default() };
             let mut numbers = vec![0.0; count * ManipulabilityBatch::WIDTH];
             let batch = self.ordinary.batch(mechanism, about, options)?;
             batch.analyse_into(rows.values, &mut numbers).map(|()| numbers)

@@ -115,20 +115,25 @@ type About = (Vec<usize>, FrameId, u64);
 pub(crate) struct Ordinary(Arc<Mutex<HashMap<About, MobilityCounts>>>);
 
 impl Ordinary {
-    /// The batch of a mechanism with these options, with cached generic counts if available.
+    /// The batch of a mechanism with these options, with cached generic counts if available; those
+    /// of tasks are not cached.
     pub(crate) fn batch(
         &self,
         mechanism: &Mechanism,
         (reference, length): (FrameId, f64),
         options: BatchOptions,
     ) -> cylindroid::Result<ManipulabilityBatch> {
+        let (of, about) = (Some(reference), Some(length));
+        if options.task.is_some() {
+            let options = BatchOptions { reference: of, length: about, ..options };
+            return ManipulabilityBatch::new(mechanism, &options);
+        }
         let key: About = (mechanism.actuated().collect(), reference, length.to_bits());
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let generic = known().get(&key).copied();
-        let (reference, length) = (Some(reference), Some(length));
         let batch = ManipulabilityBatch::new(
             mechanism,
-            &BatchOptions { reference, length, generic, ..options },
+            &BatchOptions { reference: of, length: about, generic, ..options },
         )?;
         known().insert(key, batch.generic());
         Ok(batch)

@@ -4,7 +4,7 @@
 //! Shapes   q: N x n, results: N rows of [`ManipulabilityBatch::COLUMNS`]; row-major, n of the
 //!          mechanism
 //! Units    loop-closure errors m and rad; counts and distances none; indices those of the metrics
-//! Frame    the reference frame's origin, world axes
+//! Frame    the reference frame's origin, world axes; a task is a map of the twist there
 //! Valid    any mechanism. Where a distance to a singularity is below [`CLEAR_DISTANCE`], where an
 //!          axis or a loop is near the boundary of a verdict, and where regular configurations are
 //!          hyperstatic, idle or not fixed by the actuators, the configuration is passed to the
@@ -27,7 +27,7 @@ use crate::closure::{
 };
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{Matrix, run_all};
+use crate::linalg::{Matrix, Qr, run_all};
 use crate::model::{FrameId, Mechanism};
 use crate::tolerance::{CLEAR_DISTANCE, CLOSED, NEGLIGIBLE_SHARE};
 
@@ -38,11 +38,15 @@ pub struct BatchOptions {
     pub reference: Option<FrameId>,
     /// Characteristic length (m): that of the mechanism by default.
     pub length: Option<f64>,
-    /// Metrics of twists and joint velocities. Those of wrenches and torques are not used: the
-    /// indices are those of motion.
+    /// Metrics of twists (of the task, if there is one) and joint velocities. Those of wrenches and
+    /// torques are not used: the indices are those of motion.
     pub metrics: Metrics,
+    /// The task `T u`, with independent rows, whose motions are counted and measured: the whole twist
+    /// by default. The distances to singularities of type I and II are then those of the task, the
+    /// others remain those of the mechanism.
+    pub task: Option<Matrix>,
     /// Counts at regular configurations, which identify singular ones: searched for from the home
-    /// configuration by default ([`GenericMobility::of`]).
+    /// configuration by default ([`GenericMobility::of`]). With a task they are those of the task.
     pub generic: Option<MobilityCounts>,
 }
 
@@ -69,6 +73,7 @@ pub struct ManipulabilityBatch {
     reference: FrameId,
     length: f64,
     metrics: Metrics,
+    task: Option<Matrix>,
     generic: MobilityCounts,
     kernel: Option<Kernel>,
 }
@@ -126,36 +131,52 @@ impl ManipulabilityBatch {
     /// For a mechanism.
     ///
     /// # Errors
-    /// As [`ClosedChain::of`]; metrics of the wrong size.
+    /// As [`ClosedChain::of`] and [`Relation::task`](crate::closure::Relation::task); metrics of the wrong size.
     pub fn new(mechanism: &Mechanism, options: &BatchOptions) -> Result<Self> {
-        let BatchOptions { reference, length, ref metrics, generic } = *options;
+        let BatchOptions { reference, length, ref metrics, ref task, generic } = *options;
         let home = mechanism.state(mechanism.home())?;
         let chain = ClosedChain::of(&home, reference, length)?;
         let constraint = &chain.constraint;
         let (length, reference) = (constraint.length(), chain.reference);
-        let (joints, object) = (constraint.actuated(), constraint.object());
+        let joints = constraint.actuated();
+        let object = match task {
+            // Refuses maps that are no tasks, whatever the generic counts come from.
+            Some(map) => MotionSpace::of(constraint).relation().task(map)?.object(),
+            None => constraint.object(),
+        };
         metrics.check(joints, object)?;
-        let generic = match generic {
-            Some(counts) => counts,
-            None => GenericMobility::of(&home, Some(reference), Some(length))?.counts,
+        let generic = match (generic, task) {
+            (Some(counts), _) => counts,
+            (None, None) => GenericMobility::of(&home, Some(reference), Some(length))?.counts,
+            (None, Some(map)) => {
+                GenericMobility::of_task(&home, Some(reference), length, map)?.counts
+            }
         };
         let plan = BatchedConstraintPlan::of(mechanism, reference, length)?;
         let clear = generic.rank == constraint.rows()
             && generic.idle == 0
             && generic.indeterminacy == 0
             && joints > 0;
-        let factor = |scale: &[f64], metric: Option<&crate::linalg::Metric>| {
-            let mut factor = Matrix::diagonal(scale);
+        let factor = |mut scale: Matrix, metric: Option<&crate::linalg::Metric>| {
             if let Some(metric) = metric {
-                metric.whiten_rows(&mut factor);
+                metric.whiten_rows(&mut scale);
             }
-            factor
+            scale
         };
-        let of_object = factor(&plan.object_scale, metrics.object.as_ref());
-        let of_joints = factor(&plan.actuated_scale, metrics.joint.as_ref());
-        let kernel = if clear { Kernel::new(plan, of_object, of_joints) } else { None };
-        let (mechanism, metrics) = (mechanism.clone(), metrics.clone());
-        Ok(Self { mechanism, reference, length, metrics, generic, kernel })
+        let of_joints = factor(Matrix::diagonal(&plan.actuated_scale), metrics.joint.as_ref());
+        let scale = Matrix::diagonal(&plan.object_scale);
+        // T u = R^T Q^T u', as for one configuration (relation.rs).
+        let (scale, rows) = match task {
+            None => (scale, None),
+            Some(map) => {
+                let qr = Qr::plain((map * &scale).transpose());
+                (qr.r().transpose(), Some(qr.basis().transpose()))
+            }
+        };
+        let of_object = factor(scale, metrics.object.as_ref());
+        let kernel = if clear { Kernel::new(plan, (rows, of_object), of_joints) } else { None };
+        let (mechanism, metrics, task) = (mechanism.clone(), metrics.clone(), task.clone());
+        Ok(Self { mechanism, reference, length, metrics, task, generic, kernel })
     }
 
     /// Numbers of a configuration: those of the mechanism.
@@ -176,7 +197,7 @@ impl ManipulabilityBatch {
         self.length
     }
 
-    /// What regular configurations have.
+    /// What regular configurations have, of the task if there is one.
     #[must_use]
     pub fn generic(&self) -> MobilityCounts {
         self.generic
@@ -261,7 +282,10 @@ impl ManipulabilityBatch {
         };
         let chain = ClosedChain::of(state, Some(self.reference), Some(self.length))?;
         let motions = MotionSpace::of(&chain.constraint);
-        let relation = motions.relation();
+        let relation = match &self.task {
+            None => motions.relation(),
+            Some(map) => motions.relation().task(map)?,
+        };
         let counts = MobilityCounts::of(&motions, &relation);
         let unactuated = self.generic.lack_actuation(motions.sizes());
         let excess = Excess::of(&counts, &self.generic, unactuated);
@@ -309,7 +333,9 @@ impl ManipulabilityBatch {
             }
         }
         let cosine = 1.0 / whole(most);
-        if coordinate == 0 || !(cosine > CLEAR_DISTANCE) {
+        // The motions that a task does not see are as clear, for all of them were divided alike.
+        let all_clear = found.whole.iter().all(|sigma| 1.0 / whole(*sigma) > CLEAR_DISTANCE);
+        if coordinate == 0 || !all_clear {
             return None;
         }
         let (volume, smallest, largest) = measured(found.measured, coordinate)?;
@@ -319,7 +345,7 @@ impl ManipulabilityBatch {
             idle: 0,
             redundancy: dof - coordinate,
             indeterminacy: 0,
-            zero_torque: plan.object() - coordinate,
+            zero_torque: kernel.object() - coordinate,
         };
         let here = SingularityDistances {
             type_i: sine(least),

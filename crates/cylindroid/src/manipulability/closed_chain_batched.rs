@@ -7,8 +7,8 @@
 //!          (s, c) = (sigma, 1) / hypot;
 //!          those of M = [C 0; J -1] from the eigenvalues of M M^T = [L 0; J Q -1][..]^T; the least
 //!          share of actuators and object in a motion from the pencil of K_a^T K_a + J_K^T J_K and
-//!          1 + J_K^T J_K
-//! Shapes   C: t x m, J: d x m, K: m x k, k = m - t
+//!          1 + J_K^T J_K. Of a task sigma_i of T J K R_a^-1 as well, T with orthonormal rows
+//! Shapes   C: t x m, J: d x m, K: m x k, k = m - t, T: e x d, e = d without a task
 //! Units    none
 //! Valid    independent rows of C, actuated joint velocities that determine the motion: any other
 //!          case shows as a number near zero, or as NaN, and the batch then calls the single
@@ -36,13 +36,16 @@ const HEADER: usize = 6;
 #[derive(Debug, Clone)]
 pub(super) struct Kernel {
     plan: Box<BatchedConstraintPlan>,
+    /// T, of a task.
+    task: Option<Matrix>,
     /// `L_u^T D_u` and `L_q^T D_q`: from scaled coordinates to those in which metrics are one.
     object: Matrix,
     joint: Matrix,
     /// The second where it is a multiple of the identity.
     alike: Option<f64>,
-    /// All pairs of singular values.
+    /// All pairs of singular values, and those of the whole twist.
     pairs: Vec<(usize, usize)>,
+    whole_pairs: Vec<(usize, usize)>,
 }
 
 /// Results of the kernel for a configuration.
@@ -57,16 +60,22 @@ pub(super) struct Found<'a> {
     pub(super) regularity: f64,
     /// The least share of actuators and object in a motion.
     pub(super) share: f64,
-    /// Singular values from actuated joint velocities to the twist, scaled, and in the metrics; in
-    /// no order.
+    /// Singular values from actuated joint velocities to the twist or task, scaled, and in the
+    /// metrics; in no order.
     pub(super) scaled: &'a [f64],
     pub(super) measured: &'a [f64],
+    /// Those to the whole twist, scaled.
+    pub(super) whole: &'a [f64],
 }
 
 impl Kernel {
-    /// With the metrics as factors; `None` where motions of the loops leave nothing to decide, or
-    /// are more than the actuators could set.
-    pub(super) fn new(plan: BatchedConstraintPlan, object: Matrix, joint: Matrix) -> Option<Self> {
+    /// With the rows of a task and the metrics as factors; `None` where motions of the loops leave
+    /// nothing to decide, or are more than the actuators could set.
+    pub(super) fn new(
+        plan: BatchedConstraintPlan,
+        (task, object): (Option<Matrix>, Matrix),
+        joint: Matrix,
+    ) -> Option<Self> {
         let k = plan.columns().checked_sub(plan.constraint_rows())?;
         if k == 0 || k > plan.actuated() {
             return None;
@@ -74,8 +83,9 @@ impl Kernel {
         let first = joint[(0, 0)];
         let same = Matrix::diagonal(&vec![first; joint.rows()]);
         let alike = (joint == same).then_some(first);
-        let pairs = round_robin_pairs(k.min(plan.object()));
-        Some(Self { plan: Box::new(plan), object, joint, alike, pairs })
+        let pairs = round_robin_pairs(k.min(object.rows()));
+        let whole_pairs = round_robin_pairs(k.min(plan.object()));
+        Some(Self { plan: Box::new(plan), task, object, joint, alike, pairs, whole_pairs })
     }
 
     /// Degrees of freedom k.
@@ -88,20 +98,33 @@ impl Kernel {
         &self.plan
     }
 
+    /// Size e of the twist or task.
+    pub(super) fn object(&self) -> usize {
+        self.object.rows()
+    }
+
     /// Number of singular values.
     fn values(&self) -> usize {
-        self.dof().min(self.plan.object())
+        self.dof().min(self.object())
+    }
+
+    /// Number of those of the whole twist, if they are others.
+    fn whole_values(&self) -> usize {
+        if self.task.is_some() { self.dof().min(self.plan.object()) } else { 0 }
     }
 
     /// Numbers for each configuration.
     pub(super) fn width(&self) -> usize {
-        HEADER + 2 * self.values()
+        HEADER + 2 * self.values() + self.whole_values()
     }
 
     /// The numbers of a configuration, read.
     pub(super) fn read<'a>(&self, numbers: &'a [f64]) -> Found<'a> {
-        let (scaled, measured) = numbers[HEADER..].split_at(self.values());
+        let (scaled, others) = numbers[HEADER..].split_at(self.values());
+        let (measured, whole) = others.split_at(self.values());
+        let whole = if self.task.is_some() { whole } else { scaled };
         Found {
+            whole,
             distance: numbers[0],
             angle: numbers[1],
             usable: numbers[2] > 0.0,
@@ -182,27 +205,40 @@ impl Kernel {
         let share = self.least_share(s);
         s.ratios.copy_from_slice(&s.twists);
         s.divide_by_actuated(a);
+        let e = self.object();
+        if let Some(task) = &self.task {
+            columns_of(&s.ratios, k, &mut s.columns, d);
+            let whole = &mut s.numbers[HEADER + 2 * values..];
+            singular_values(&mut s.columns, k.max(d), &self.whole_pairs, whole);
+            for rows in [&mut s.twists, &mut s.ratios] {
+                times(task, 1.0, rows, k, &mut s.columns[..e * k]);
+                rows[..e * k].copy_from_slice(&s.columns[..e * k]);
+            }
+        }
+        let (twists, columns) = (&s.twists[..e * k], &mut s.columns[..e * k]);
         let scaled = HEADER..HEADER + values;
-        columns_of(&s.ratios, k, &mut s.columns, d);
-        singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[scaled]);
+        columns_of(&s.ratios[..e * k], k, columns, e);
+        singular_values(columns, k.max(e), &self.pairs, &mut s.numbers[scaled]);
         // In the metrics. What is orthogonal in one is so nearly in the other: where it can be, the
         // columns that were turned are the start.
-        if let (Some(alike), true) = (self.alike, k <= d) {
-            for (own, column) in s.ratios.chunks_exact_mut(d).zip(s.columns.chunks_exact(d)) {
+        if let (Some(alike), true) = (self.alike, k <= e) {
+            let ratios = &mut s.ratios[..e * k];
+            for (own, column) in ratios.chunks_exact_mut(e).zip(columns.chunks_exact(e)) {
                 times(&self.object, 1.0 / alike, column, 1, own);
             }
-            s.columns.copy_from_slice(&s.ratios);
+            columns.copy_from_slice(ratios);
         } else if let Some(alike) = self.alike {
-            times(&self.object, 1.0 / alike, &s.ratios, k, &mut s.columns);
+            times(&self.object, 1.0 / alike, &s.ratios[..e * k], k, columns);
         } else {
-            times(&self.object, 1.0, &s.twists, k, &mut s.ratios);
+            times(&self.object, 1.0, twists, k, &mut s.ratios[..e * k]);
             for (own, column) in s.actuated.chunks_exact_mut(a).zip(s.kernel.chunks_exact(m)) {
                 times(&self.joint, 1.0, &column[..a], 1, own);
             }
             s.divide_by_actuated(a);
-            columns_of(&s.ratios, k, &mut s.columns, d);
+            columns_of(&s.ratios[..e * k], k, &mut s.columns[..e * k], e);
         }
-        singular_values(&mut s.columns, k.max(d), &self.pairs, &mut s.numbers[HEADER + values..]);
+        let measured = HEADER + values..HEADER + 2 * values;
+        singular_values(&mut s.columns[..e * k], k.max(e), &self.pairs, &mut s.numbers[measured]);
         let [smallest, largest] = self.extremes(s);
         let numbers = [written.distance, written.angle, written.usable, smallest, largest, share];
         s.numbers[..HEADER].copy_from_slice(&numbers);
@@ -403,7 +439,7 @@ mod tests {
                     .unwrap();
             let of = |scale: &[f64]| Matrix::diagonal(scale);
             let (object, joint) = (of(&plan.object_scale), of(&plan.actuated_scale));
-            let kernel = Kernel::new(plan, object, joint).unwrap();
+            let kernel = Kernel::new(plan, (None, object), joint).unwrap();
             let (n, count) = (mechanism.n(), 11);
             let mut random = 8;
             let q: Vec<f64> = (0..count)

@@ -90,7 +90,7 @@ impl Evaluator {
             None
         };
         let measures = if wants(Quantity::Measures) {
-            Some(measures(mechanism, options, end_effector, length)?)
+            Some(measures(mechanism, options, (end_effector, &task), length)?)
         } else {
             None
         };
@@ -418,17 +418,12 @@ fn volume(
 fn measures(
     mechanism: &Mechanism,
     options: &SweepOptions,
-    end_effector: EndEffector,
+    (end_effector, task): (EndEffector, &[usize]),
     length: f64,
 ) -> Result<ManipulabilityBatch> {
     let refuse = |option: &'static str, value: String, reason: &str| {
         Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
     };
-    if options.task.is_some() {
-        let reason = "measures are those of the whole twist; use yoshikawa, singular_values or \
-                      condition";
-        return refuse("task", Quantity::Measures.name().to_owned(), reason);
-    }
     if end_effector.frame_from_tool != crate::spatial::Pose::IDENTITY {
         let reason = "measures are those of a frame of the model; define one at this point";
         return refuse("tool", String::new(), reason);
@@ -442,9 +437,20 @@ fn measures(
     if options.metric == VelocityMetric::Limits {
         metrics = metrics.with_velocity_limits(&velocity_limits(mechanism, &chain.actuated)?)?;
     }
+    let task = options.task.map(|_| task_map(task, chain.constraint.object()));
+    // The unit metric of a task is that of its own numbers.
+    if let (Some(map), true) = (&task, options.metric != VelocityMetric::Unit) {
+        metrics = metrics.for_task(map)?;
+    }
     let reference = Some(end_effector.frame);
-    let options = BatchOptions { reference, length: Some(length), metrics, generic: None };
+    let options = BatchOptions { reference, length: Some(length), metrics, task, generic: None };
     ManipulabilityBatch::new(mechanism, &options)
+}
+
+/// Components of a twist of `size` numbers, three in the plane, as a map.
+fn task_map(components: &[usize], size: usize) -> Matrix {
+    let place = |i: usize| if size == 3 && i == 5 { 2 } else { i };
+    Matrix::from_fn(components.len(), size, |i, j| f64::from(u8::from(place(components[i]) == j)))
 }
 
 /// The row of an error within a block.

@@ -171,6 +171,63 @@ fn measures_are_those_of_the_batch() {
     }
 }
 
+/// Of a task, and in the plane.
+#[test]
+fn measures_of_a_task_are_those_of_the_batch() {
+    for (model, task, rows) in [
+        ("3r", Task::POSITION, &[0, 1, 2][..]),
+        (
+            "panda",
+            Task { components: [true, false, false, false, false, true], ..Task::POSE },
+            &[0, 5],
+        ),
+        (
+            "five-bar",
+            Task { components: [false, true, false, false, false, true], ..Task::POSE },
+            &[1, 2],
+        ),
+    ] {
+        let robot = cylindroid::load(model).unwrap();
+        let size = if robot.is_closed() { 3 } else { 6 };
+        let map = Matrix::from_fn(rows.len(), size, |i, j| f64::from(u8::from(rows[i] == j)));
+        let length = robot.reach();
+        let state = robot.state(robot.home()).unwrap();
+        let units = ClosedChain::of(&state, None, Some(length)).unwrap().units;
+        for metric in [VelocityMetric::Unit, VelocityMetric::Length] {
+            let metrics = match metric {
+                VelocityMetric::Unit => Metrics::UNIT,
+                _ => {
+                    let whole = Metrics::characteristic_length(&units, length).unwrap();
+                    whole.for_task(&map).unwrap()
+                }
+            };
+            let reference = if robot.is_closed() { robot.reference() } else { robot.tool() };
+            let options = BatchOptions {
+                reference: Some(reference),
+                metrics,
+                task: Some(map.clone()),
+                ..BatchOptions::default()
+            };
+            let batch = ManipulabilityBatch::new(&robot, &options).unwrap();
+            let source = Source::Configurations(robot.home().to_vec());
+            let quantities = vec![Quantity::Measures];
+            let task = Some(task);
+            let options = SweepOptions { source, quantities, task, metric, ..Default::default() };
+            let table = Sweep::new(&robot, options).unwrap().table(0..1).unwrap();
+            let expected = batch.analyse(robot.home()).unwrap();
+            for (name, x) in ManipulabilityBatch::COLUMNS.iter().zip(expected) {
+                match table.column(name).unwrap() {
+                    Values::Counts(counts) => assert!(counts[0] as f64 == x, "{model} {name}"),
+                    Values::Numbers(own) => {
+                        assert!(own[0].to_bits() == x.to_bits(), "{model} {name}");
+                    }
+                    _ => panic!(),
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn statistics_are_those_of_the_table() {
     let robot = cylindroid::load("youbot").unwrap();
@@ -231,9 +288,6 @@ fn quantities_that_do_not_exist_are_refused() {
     assert!(refused("panda", with_task(local)).contains("world axes"));
     let none = Task { components: [false; 6], ..Task::POSE };
     assert!(refused("panda", with_task(none)).contains("at least one"));
-    let task = Some(Task::POSITION);
-    let measures = SweepOptions { task, ..with(&[Quantity::Measures]) };
-    assert!(refused("panda", measures).contains("whole twist"));
     let length = SweepOptions { length: Some(0.0), ..Default::default() };
     assert!(refused("panda", length).contains("positive"));
     let metric = VelocityMetric::Limits;

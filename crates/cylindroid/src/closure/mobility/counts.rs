@@ -6,6 +6,8 @@ use super::compression::Compression;
 use super::motion_space::{MotionSpace, RowSelection};
 use super::relation::{Relation, RelationDimensions};
 use crate::closure::constraint::velocity_constraint::Constraint;
+use crate::error::Result;
+use crate::linalg::Matrix;
 
 /// The rows of actuated joints and object: a motion that vanishes on them is idle.
 pub(crate) const ACTUATED_AND_OBJECT: RowSelection =
@@ -88,6 +90,14 @@ impl MobilityCounts {
         let compression = Compression::of(constraint);
         let motions = MotionSpace::with_threshold(compression.constraint(constraint), threshold);
         Self::of(&motions, &motions.relation()).with_split_off(compression.split_off())
+    }
+
+    /// The same of the task `T u`.
+    pub(crate) fn of_task(constraint: &Constraint, threshold: f64, task: &Matrix) -> Result<Self> {
+        let compression = Compression::of(constraint);
+        let motions = MotionSpace::with_threshold(compression.constraint(constraint), threshold);
+        let relation = motions.relation().task(task)?;
+        Ok(Self::of(&motions, &relation).with_split_off(compression.split_off()))
     }
 
     /// h: dimension by which the possible velocities of the actuated joints fall short of all.

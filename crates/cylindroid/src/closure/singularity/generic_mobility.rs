@@ -15,10 +15,12 @@
 //! Checked  tests/it/closure/diagnosis.rs, tests/it/linkages/published.rs
 
 use crate::closure::constraint::closed_chain::ClosedChain;
+use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::closure::mobility::counts::MobilityCounts;
 use crate::closure::mobility::finite_mobility::FiniteMobility;
 use crate::error::Result;
 use crate::kinematics::State;
+use crate::linalg::Matrix;
 use crate::model::FrameId;
 use crate::tolerance::CLOSURE_RANK;
 
@@ -67,6 +69,23 @@ impl GenericMobility {
         Self::around(state, reference, length, counts, &finite)
     }
 
+    /// Of the task `T u` of the reference frame's twist, an independent map.
+    ///
+    /// # Errors
+    /// As [`Relation::task`](crate::closure::Relation::task).
+    pub(crate) fn of_task(
+        state: &State,
+        reference: Option<FrameId>,
+        length: f64,
+        task: &Matrix,
+    ) -> Result<Self> {
+        let chain = ClosedChain::of(state, reference, Some(length))?;
+        let counts = MobilityCounts::of_task(&chain.constraint, CLOSURE_RANK, task)?;
+        let finite = FiniteMobility::of(state, Some(length))?;
+        let of = |constraint: &Constraint, rank| MobilityCounts::of_task(constraint, rank, task);
+        Self::on_branches(state, (reference, length), counts, &finite, of)
+    }
+
     /// The same for a configuration whose counts and finite mobility are known.
     pub(crate) fn around(
         state: &State,
@@ -75,10 +94,22 @@ impl GenericMobility {
         counts: MobilityCounts,
         finite: &FiniteMobility,
     ) -> Result<Self> {
+        let of =
+            |constraint: &Constraint, rank| Ok(MobilityCounts::of_constraint(constraint, rank));
+        Self::on_branches(state, (reference, length), counts, finite, of)
+    }
+
+    fn on_branches(
+        state: &State,
+        (reference, length): (Option<FrameId>, f64),
+        counts: MobilityCounts,
+        finite: &FiniteMobility,
+        of: impl Fn(&Constraint, f64) -> Result<MobilityCounts>,
+    ) -> Result<Self> {
         let mechanism = state.mechanism();
         let at = |q: &[f64], rank: f64| -> Result<MobilityCounts> {
             let chain = ClosedChain::of(&mechanism.state(q)?, reference, Some(length))?;
-            Ok(MobilityCounts::of_constraint(&chain.constraint, rank))
+            of(&chain.constraint, rank)
         };
         let mut generic = Self { counts, branches: Vec::new(), others: 0 };
         for branch in &finite.branches {

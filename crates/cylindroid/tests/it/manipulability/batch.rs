@@ -22,13 +22,15 @@ fn single(
     batch: &ManipulabilityBatch,
     mechanism: &Mechanism,
     q: &[f64],
-    metrics: &Metrics,
+    (metrics, task): (&Metrics, Option<&Matrix>),
 ) -> [f64; WIDTH] {
     let state = mechanism.state(q).unwrap();
     let length = batch.length();
     let chain = ClosedChain::of(&state, Some(batch.reference()), Some(length)).unwrap();
     let motions = MotionSpace::of(&chain.constraint);
     let relation = motions.relation();
+    let relation = task.map_or_else(|| relation.clone(), |map| relation.task(map).unwrap());
+    let dimensions = relation.dimensions();
     let m = Mobility::of(&chain.constraint);
     let found = Singularities::of(&motions, &relation, &batch.generic()).distances;
     let kinematic = Manipulability::of(&relation, metrics).unwrap().kinematic;
@@ -38,11 +40,11 @@ fn single(
         chain.closure_error.angle,
         f64::from(u8::from(chain.closure_error.is_closed(length))),
         m.dof.dimension() as f64,
-        m.relation.redundancy as f64,
-        m.relation.indeterminacy as f64,
-        m.relation.coordinate as f64,
+        dimensions.redundancy as f64,
+        dimensions.indeterminacy as f64,
+        dimensions.coordinate as f64,
         m.internal.dimension() as f64,
-        m.zero_torque.dimension() as f64,
+        dimensions.zero_torque as f64,
         m.hyperstatic.dimension() as f64,
         m.idle.dimension() as f64,
         found.type_i,
@@ -91,7 +93,8 @@ fn compare(what: &str, mechanism: &Mechanism, options: &BatchOptions, q: &[f64])
     let n = mechanism.n();
     assert_eq!(rows.len(), q.len() / n * WIDTH);
     for (i, (q, row)) in q.chunks(n).zip(rows.chunks(WIDTH)).enumerate() {
-        let expected = single(&batch, mechanism, q, &options.metrics);
+        let about = (&options.metrics, options.task.as_ref());
+        let expected = single(&batch, mechanism, q, about);
         check(&format!("{what} {i}"), row, &expected, batch.length());
     }
 }
@@ -158,6 +161,60 @@ fn agrees_in_other_metrics_frames_and_lengths() {
     let generic = Some(MobilityCounts { zero_torque: 0, ..batch.generic() });
     let options = BatchOptions { generic, ..BatchOptions::default() };
     compare("generic", &five_bar, &options, &postures(&five_bar, 9, 0.2));
+}
+
+/// Components and other maps of the twist; metrics are those of the task.
+#[test]
+fn agrees_for_tasks() {
+    let rows = |rows: &[&[f64]]| Matrix::from_rows(rows).unwrap();
+    let position = Matrix::from_fn(3, 6, |i, j| f64::from(u8::from(i == j)));
+    let mixed = rows(&[&[1.0, 2.0, 0.0, 0.3, 0.0, 0.0], &[0.0, 1.0, -1.0, 0.0, 0.0, 4.0]]);
+    let plane = rows(&[&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0]]);
+    let with = |task: &Matrix| BatchOptions { task: Some(task.clone()), ..BatchOptions::default() };
+    for name in ["panda", "ur5e", "youbot", "3r", "stewart", "delta", "two-arm"] {
+        let mechanism = catalogue::load(name).unwrap();
+        for task in [&position, &mixed] {
+            let q = postures(&mechanism, 21, 0.4);
+            compare(&format!("{name} of {} rows", task.rows()), &mechanism, &with(task), &q);
+        }
+    }
+    let drives: [&[&str]; 5] =
+        [&["q1", "q5"], &["q2", "q4"], &["q3"], &["q1", "q2", "q3"], &["q1"]];
+    for driven in drives {
+        let five_bar = catalogue::load("five-bar").unwrap().with_actuated(driven).unwrap();
+        let q = postures(&five_bar, 31, 0.4);
+        compare(&format!("five-bar {driven:?}"), &five_bar, &with(&plane), &q);
+        compare("one", &five_bar, &with(&rows(&[&[1.0, 1.0, 0.5]])), &q);
+    }
+    let ur5e = catalogue::load("ur5e").unwrap();
+    let joints = Matrix::from_fn(6, 6, |i, j| if i == j { 1.0 + 0.1 * i as f64 } else { 0.05 });
+    let object = rows(&[&[2.0, 0.3], &[0.3, 1.0]]);
+    let metrics = Metrics::UNIT.with_object(&object).unwrap().with_joint(&joints).unwrap();
+    let options = BatchOptions { metrics, length: Some(0.7), ..with(&mixed) };
+    compare("own metrics", &ur5e, &options, &postures(&ur5e, 21, 0.5));
+}
+
+/// A 3R arm loses motions of its point where it is straight; among all twists of space it lacks three
+/// everywhere.
+#[test]
+fn tasks_have_their_own_singularities() {
+    let arm = catalogue::load("3r").unwrap();
+    let task = Matrix::from_fn(3, 6, |i, j| f64::from(u8::from(i == j)));
+    let options = BatchOptions { task: Some(task), ..BatchOptions::default() };
+    let batch = ManipulabilityBatch::new(&arm, &options).unwrap();
+    assert_eq!((batch.generic().zero_torque, batch.generic().redundancy), (0, 0));
+    let q = [[0.4, -0.5, 1.0], [0.4, -0.5, 0.0]].concat();
+    let found = batch.analyse(&q).unwrap();
+    let of =
+        |row: usize, name: &str| found[row * WIDTH + ManipulabilityBatch::column(name).unwrap()];
+    assert_eq!((of(0, "coordinate"), of(1, "coordinate")), (3.0, 2.0));
+    assert_eq!((of(0, "zero_torque"), of(1, "zero_torque")), (0.0, 1.0));
+    assert!(of(0, "type_i") > 0.05 && of(1, "type_i") == 0.0);
+    let wrong = Matrix::from_fn(2, 6, |_, j| j as f64);
+    let options = BatchOptions { task: Some(wrong), ..BatchOptions::default() };
+    assert!(matches!(ManipulabilityBatch::new(&arm, &options), Err(Error::InvalidOption { .. })));
+    let options = BatchOptions { task: Some(Matrix::identity(3)), ..BatchOptions::default() };
+    assert!(matches!(ManipulabilityBatch::new(&arm, &options), Err(Error::Dimension { .. })));
 }
 
 /// A leg that is a screw, loop-closure joints of every kind that constrains rotations, and a mimic joint.

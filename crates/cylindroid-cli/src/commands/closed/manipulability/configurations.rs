@@ -8,6 +8,7 @@ use cylindroid::Error;
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
 use serde::Serialize;
 
+use super::super::measured::Task;
 use super::super::{Posed, measured};
 use crate::args::{ManipulabilityArgs, MetricName};
 use crate::commands::shared::Style;
@@ -25,6 +26,8 @@ struct ConfigurationsJson<'a> {
     /// Characteristic length [m].
     length: f64,
     metric: &'static str,
+    /// Names of the components of the twist, or of the task, that are measured.
+    components: &'a [String],
     /// Metrics given in place of a part of it.
     own_metrics: Vec<&'static str>,
     /// Names of the numbers of a row.
@@ -63,16 +66,24 @@ pub(super) fn run(
     let (mechanism, chain) = (&posed.mechanism, &posed.chain);
     let names: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
     let q = number_file::configurations(path, &names)?;
+    let task = Task::new(&posed, args)?;
+    let metrics = measured::metrics(&posed, args, task.as_ref())?;
+    let (components, task) = match task {
+        Some(task) => (task.names, Some(task.map)),
+        None => (posed.components().iter().map(|c| (*c).to_owned()).collect(), None),
+    };
+    let is_task = task.is_some();
     let options = BatchOptions {
         reference: Some(chain.reference),
         length: Some(chain.constraint.length()),
-        metrics: measured::metrics(&posed, args, None)?,
+        metrics,
+        task,
         generic: None,
     };
     let numbers = ManipulabilityBatch::new(mechanism, &options)?.analyse(&q)?;
     let rows: Vec<&[f64]> = numbers.chunks(ManipulabilityBatch::WIDTH).collect();
     if style == Style::Table {
-        print(out, &posed, args.metric, &rows)?;
+        print(out, &posed, (args.metric, is_task.then_some(&components)), &rows)?;
         return Ok(ExitCode::SUCCESS);
     }
     let own = [("wu", args.wu.is_some()), ("wq", args.wq.is_some())];
@@ -83,6 +94,7 @@ pub(super) fn run(
         passive: &chain.passive,
         length: chain.constraint.length(),
         metric: args.metric.name(),
+        components: &components,
         own_metrics: own.into_iter().filter(|o| o.1).map(|o| o.0).collect(),
         columns: ManipulabilityBatch::COLUMNS,
         rows,
@@ -95,7 +107,7 @@ pub(super) fn run(
 fn print(
     out: &mut dyn Write,
     posed: &Posed,
-    metric: MetricName,
+    (metric, task): (MetricName, Option<&Vec<String>>),
     rows: &[&[f64]],
 ) -> anyhow::Result<()> {
     let changes = |i: &usize| rows.iter().any(|row| row[*i].to_bits() != rows[0][*i].to_bits());
@@ -113,6 +125,7 @@ fn print(
             ("actuated", super::super::list(&posed.chain.actuated)),
             ("configurations", rows.len().to_string()),
             ("metric", metric.name().to_owned()),
+            ("task", task.map_or_else(String::new, |task| task.join(", "))),
             ("the same in all", same.collect::<Vec<_>>().join(", ")),
         ],
     )?;
