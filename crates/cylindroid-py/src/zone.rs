@@ -52,17 +52,20 @@ impl PyZone {
 
     #[getter]
     fn centre<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        named(py, self.zone.components.iter().map(|c| (&c.name, c.centre)))
+        let all = self.zone.components.iter().map(|c| (c.name.as_str(), c.centre));
+        named(py, &all.collect::<Vec<_>>())
     }
 
     #[getter]
     fn scales<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        named(py, self.zone.components.iter().map(|c| (&c.name, c.scale)))
+        let all = self.zone.components.iter().map(|c| (c.name.as_str(), c.scale));
+        named(py, &all.collect::<Vec<_>>())
     }
 
     #[getter]
     fn held<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        named(py, self.zone.held.iter().map(|(name, value)| (name, *value)))
+        let all = self.zone.held.iter().map(|(name, value)| (name.as_str(), *value));
+        named(py, &all.collect::<Vec<_>>())
     }
 
     #[getter]
@@ -103,10 +106,7 @@ impl PyZone {
     }
 }
 
-fn named<'py, 'a>(
-    py: Python<'py>,
-    values: impl Iterator<Item = (&'a String, f64)>,
-) -> PyResult<Bound<'py, PyDict>> {
+fn named<'py>(py: Python<'py>, values: &[(&str, f64)]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, value) in values {
         dict.set_item(name, value)?;

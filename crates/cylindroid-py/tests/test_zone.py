@@ -38,7 +38,7 @@ def test_input_is_checked():
     for call, kind in [
         (lambda: cy.singularity_free_zone(robot, []), cy.InvalidOptionError),
         (lambda: cy.singularity_free_zone(robot, ["w"]), cy.UnknownNameError),
-        (lambda: cy.singularity_free_zone(robot, ["x"], free=["y"]), cy.InvalidOptionError),
+        (lambda: cy.singularity_free_zone(robot, ["x"], free=["y", "rz"]), cy.InvalidOptionError),
         (lambda: cy.singularity_free_zone(robot, ["x", "y"], shape="cone"), cy.UnknownNameError),
         (lambda: cy.singularity_free_zone(robot, ["x", "y"], scales=[1.0]), cy.DimensionError),
         (lambda: cy.singularity_free_zone(robot, ["x", "y"], at={"x": np.inf}), cy.NotFiniteError),

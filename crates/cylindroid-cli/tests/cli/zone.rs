@@ -27,7 +27,8 @@ fn zones_in_tables_and_json() {
 fn zones_that_do_not_exist() {
     let message = refused(&["zone", "five-bar", "--components", "x,w"]);
     assert!(message.contains("'w'") && message.contains("--components"), "{message}");
-    let message = refused(&["zone", "five-bar", "--components", "x", "--free", "y"]);
+    let message =
+        refused(&["zone", "five-bar", "--components", "x", "--free", "y", "--free", "rz"]);
     assert!(message.contains("motions of the mechanism free"), "{message}");
     let message = refused(&["zone", "five-bar", "--components", "x,y", "--scales", "1"]);
     assert!(message.contains("--scales"), "{message}");

@@ -104,11 +104,10 @@ fn determinant<const N: usize>(mut a: [[f64; N]; N]) -> f64 {
         if a[k][k] == 0.0 {
             return 0.0;
         }
-        for i in k + 1..N {
-            let factor = a[i][k] / a[k][k];
-            for j in k..N {
-                a[i][j] -= factor * a[k][j];
-            }
+        let row = a[k];
+        for below in &mut a[k + 1..] {
+            let factor = below[k] / row[k];
+            below.iter_mut().zip(row).for_each(|(x, above)| *x -= factor * above);
         }
     }
     product
@@ -290,7 +289,8 @@ fn zones_that_do_not_exist_are_refused() {
     assert!(message("five-bar", &[], plain()).contains("name one at least"));
     assert!(message("five-bar", &["x", "x"], plain()).contains("named twice"));
     assert!(matches!(refused("five-bar", &["x", "w"], plain()), Error::UnknownName { .. }));
-    let free = ZoneOptions { held: vec![("y".to_owned(), None)], ..plain() };
+    let both = ["y", "rz"].map(|name| (name.to_owned(), None)).to_vec();
+    let free = ZoneOptions { held: both, ..plain() };
     assert!(message("five-bar", &["x"], free).contains("motions of the mechanism free"));
     assert!(message("panda", &["x", "y", "z"], plain()).contains("free"));
     let joints = ["panda_joint1", "panda_joint2"];
