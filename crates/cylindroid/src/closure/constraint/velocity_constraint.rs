@@ -7,8 +7,8 @@
 //!          D_c multiplies columns of lengths by it: M' has no unit
 //! Frame    any: u and its wrench are taken at one point in one frame, each row in a frame of its
 //!          own
-//! Valid    any sizes, including zero, up to 2000 columns and 12 000 rows. Several objects: the columns -G^T of those that are not the
-//!          reference belong to `passive`
+//! Valid    any sizes, including zero, up to 2000 columns and 12 000 rows. Several objects: the
+//!          columns -G^T of those that are not the reference belong to `passive`
 //! Why so   equilibrating rows and columns would need no length, but it amplifies a row that is
 //!          zero up to rounding until it counts
 //! Source   Bicchi & Prattichizzo 1998, eq. 2 and appendix A

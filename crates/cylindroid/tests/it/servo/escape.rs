@@ -110,26 +110,28 @@ fn a_straight_elbow_opens() {
     }
 }
 
+/// Two links of 1 m, the elbow within limits.
+fn arm(lower: f64, upper: f64) -> Mechanism {
+    let mut b = Mechanism::builder("2r");
+    for (i, (lower, upper)) in [(-3.0, 3.0), (lower, upper)].into_iter().enumerate() {
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * i as f64),
+            limits: Limits { lower, upper, velocity: 2.0, ..Limits::NONE },
+            ..JointSpec::new(
+                &format!("q{i}"),
+                JointKind::Revolute,
+                &format!("l{i}"),
+                &format!("l{}", i + 1),
+            )
+        });
+    }
+    b.frame("tip", "l2", Pose::from_translation(Vec3::X)).tool("tip");
+    b.build().unwrap()
+}
+
 /// Of two equal motions, the elbow takes the one with more room to its limits.
 #[test]
 fn the_elbow_opens_where_its_limits_leave_room() {
-    let arm = |lower: f64, upper: f64| {
-        let mut b = Mechanism::builder("2r");
-        for (i, (lower, upper)) in [(-3.0, 3.0), (lower, upper)].into_iter().enumerate() {
-            b.joint(JointSpec {
-                parent_from_joint: Pose::from_translation(Vec3::X * i as f64),
-                limits: Limits { lower, upper, velocity: 2.0, ..Limits::NONE },
-                ..JointSpec::new(
-                    &format!("q{i}"),
-                    JointKind::Revolute,
-                    &format!("l{i}"),
-                    &format!("l{}", i + 1),
-                )
-            });
-        }
-        b.frame("tip", "l2", Pose::from_translation(Vec3::X)).tool("tip");
-        b.build().unwrap()
-    };
     let target = Pose::from_translation(Vec3::new(1.5, 0.0, 0.0));
     for (lower, upper) in [(-2.5, 0.5), (-0.5, 2.5), (0.0, 2.5), (-2.5, 0.0)] {
         let robot = arm(lower, upper);
@@ -149,21 +151,7 @@ fn the_elbow_opens_where_its_limits_leave_room() {
 /// when its target comes back inside.
 #[test]
 fn a_stretched_arm_folds_to_the_side_with_room() {
-    let mut b = Mechanism::builder("2r");
-    for (i, (lower, upper)) in [(-3.0, 3.0), (-2.5, 0.3)].into_iter().enumerate() {
-        b.joint(JointSpec {
-            parent_from_joint: Pose::from_translation(Vec3::X * i as f64),
-            limits: Limits { lower, upper, velocity: 2.0, ..Limits::NONE },
-            ..JointSpec::new(
-                &format!("q{i}"),
-                JointKind::Revolute,
-                &format!("l{i}"),
-                &format!("l{}", i + 1),
-            )
-        });
-    }
-    b.frame("tip", "l2", Pose::from_translation(Vec3::X)).tool("tip");
-    let robot = b.build().unwrap();
+    let robot = arm(-2.5, 0.3);
     for method in Method::ALL {
         for start in [1e-4, 1e-3, 5e-3, 0.01] {
             let mut servo = servo(&robot, |o| (o.task, o.method) = (Task::POSITION, method));
