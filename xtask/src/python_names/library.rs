@@ -8,17 +8,17 @@ use syn::{Attribute, ImplItem, Item, ItemMod, Type, UseTree, Visibility};
 
 /// A public function, or a method of a public type.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Function {
+pub(crate) struct Function {
     /// The public module: `screws`, `model::catalogue`.
     module: String,
     /// The type whose method it is.
-    pub(super) of: Option<String>,
-    pub(super) name: String,
+    pub(crate) of: Option<String>,
+    pub(crate) name: String,
 }
 
 impl Function {
     /// `screws::ScrewSystem::order`.
-    pub(super) fn path(&self) -> String {
+    pub(crate) fn path(&self) -> String {
         let of = self.of.as_ref().map_or_else(String::new, |of| format!("{of}::"));
         format!("{}::{of}{}", self.module, self.name)
     }
@@ -45,7 +45,7 @@ struct Definition {
 ///
 /// # Errors
 /// Files that are missing or cannot be parsed.
-pub(super) fn public_functions(source: &Path) -> Result<Vec<Function>> {
+pub(crate) fn public_functions(source: &Path) -> Result<Vec<Function>> {
     let mut walk = Walk::default();
     let root = parse(&source.join("lib.rs"))?;
     walk.module(&root.items, source, &[], true)?;

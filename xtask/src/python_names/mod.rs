@@ -7,7 +7,7 @@
 //! Functions that macros define are not seen.
 
 mod exceptions;
-mod library;
+pub(crate) mod library;
 mod stub;
 
 use std::path::Path;
@@ -18,7 +18,7 @@ use self::exceptions::{Exception, Way};
 use self::library::Function;
 use self::stub::Names;
 
-const LIBRARY: &str = "crates/cylindroid/src";
+pub(crate) const LIBRARY: &str = "crates/cylindroid/src";
 const STUB: &str = "crates/cylindroid-py/python/cylindroid/_core.pyi";
 /// Functions of the library that are written in Python.
 const SWEEPS: &str = "crates/cylindroid-py/python/cylindroid/_sweeps.py";

@@ -221,6 +221,12 @@ impl CollisionModel {
             .ok_or_else(|| Error::unknown("obstacle", name, self.obstacles()))
     }
 
+    /// True for its own mechanism, or one that differs from it in limits and drives only.
+    pub(crate) fn fits(&self, mechanism: &Mechanism) -> bool {
+        let own = &self.mechanism;
+        own.check_frame(mechanism.tool()).is_ok() && own.nodes().len() == mechanism.nodes().len()
+    }
+
     /// The pairs nearer than `margin` (m) at a configuration, into `out`, in the order of
     /// [`CollisionModel::pairs`]. An infinite margin evaluates all pairs.
     ///
@@ -229,7 +235,7 @@ impl CollisionModel {
     pub fn near(&mut self, state: &State, margin: f64, out: &mut Vec<NearPair>) -> Result<()> {
         out.clear();
         let (own, other) = (&self.mechanism, state.mechanism());
-        if own.check_frame(other.tool()).is_err() {
+        if !self.fits(other) {
             let reason = format!("the shapes are those of '{}'", own.name());
             return Err(body::refused("state", other.name(), reason));
         }
@@ -252,7 +258,7 @@ impl CollisionModel {
     /// rate of the distance is its product with the joint velocities. Without allocation.
     ///
     /// # Panics
-    /// If `row` has other than n entries.
+    /// If `row` has other than n entries, or the state is of another mechanism.
     pub fn gradient_into(&self, state: &State, near: &NearPair, row: &mut [f64]) {
         assert_eq!(row.len(), self.mechanism.n(), "entries of the gradient");
         gradient_into(state, near, row);
@@ -318,6 +324,9 @@ impl CollisionModel {
     /// assert_eq!(model.gradient(&state, &near[0]), [-1.0]);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the state is of another mechanism.
     #[must_use]
     pub fn gradient(&self, state: &State, near: &NearPair) -> Vec<f64> {
         let mut row = vec![0.0; self.mechanism.n()];

@@ -77,12 +77,18 @@ impl Matrix {
     }
 
     /// Column `j`.
+    ///
+    /// # Panics
+    /// If there is no such column.
     #[must_use]
     pub fn column(&self, j: usize) -> &[f64] {
         &self.data[j * self.rows..(j + 1) * self.rows]
     }
 
     /// Column `j`, mutable.
+    ///
+    /// # Panics
+    /// If there is no such column.
     pub fn column_mut(&mut self, j: usize) -> &mut [f64] {
         &mut self.data[j * self.rows..(j + 1) * self.rows]
     }
@@ -233,6 +239,9 @@ impl Matrix {
     }
 
     /// The length of row `i`.
+    ///
+    /// # Panics
+    /// If there is no such row.
     #[must_use]
     pub fn row_norm(&self, i: usize) -> f64 {
         (0..self.cols).map(|j| self[(i, j)].powi(2)).sum::<f64>().sqrt()

@@ -172,6 +172,9 @@ impl Metric {
     }
 
     /// `y <- M y`.
+    ///
+    /// # Panics
+    /// If `y` is shorter than the metric.
     pub fn apply(&self, y: &mut [f64]) {
         self.whiten(y);
         for i in (0..self.len()).rev() {
@@ -180,6 +183,9 @@ impl Metric {
     }
 
     /// `y <- L^T y`: to coordinates in which the metric is the identity.
+    ///
+    /// # Panics
+    /// If `y` is shorter than the metric.
     pub fn whiten(&self, y: &mut [f64]) {
         let n = self.len();
         for i in 0..n {
@@ -188,6 +194,9 @@ impl Metric {
     }
 
     /// `y <- L^-T y`: back from coordinates in which the metric is the identity.
+    ///
+    /// # Panics
+    /// If `y` is shorter than the metric.
     pub fn unwhiten(&self, y: &mut [f64]) {
         let n = self.len();
         for i in (0..n).rev() {
@@ -198,6 +207,9 @@ impl Metric {
 
     /// `y <- L y`: a force from the coordinates of whitened motions ([`Metric::whiten`]) back to
     /// its own.
+    ///
+    /// # Panics
+    /// If `y` is shorter than the metric.
     pub fn unwhiten_dual(&self, y: &mut [f64]) {
         for i in (0..self.len()).rev() {
             y[i] = (0..=i).map(|k| self.l[(i, k)] * y[k]).sum();
@@ -205,6 +217,9 @@ impl Metric {
     }
 
     /// `a <- A L^-T` : the columns of A measured in whitened joint coordinates.
+    ///
+    /// # Panics
+    /// If `a` has another number of columns than the metric.
     pub fn solve_right(&self, a: &mut Matrix) {
         // Row r of A L^-T solves L z = row^T.
         let n = self.len();
@@ -217,6 +232,9 @@ impl Metric {
     }
 
     /// `a <- L^T A`: the rows of A measured in whitened task coordinates.
+    ///
+    /// # Panics
+    /// If `a` has another number of rows than the metric.
     pub fn whiten_rows(&self, a: &mut Matrix) {
         for j in 0..a.cols() {
             self.whiten(a.column_mut(j));

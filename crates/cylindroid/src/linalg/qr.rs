@@ -189,6 +189,9 @@ impl Qr {
     }
 
     /// `x <- Q x`, m entries.
+    ///
+    /// # Panics
+    /// If `x` has another size than the columns.
     pub fn apply(&self, x: &mut [f64]) {
         for j in (0..self.factors.len()).rev() {
             self.reflect(j, x);
@@ -196,6 +199,9 @@ impl Qr {
     }
 
     /// `x <- Q^T x`, m entries.
+    ///
+    /// # Panics
+    /// If `x` has another size than the columns.
     pub fn apply_transposed(&self, x: &mut [f64]) {
         for j in 0..self.factors.len() {
             self.reflect(j, x);

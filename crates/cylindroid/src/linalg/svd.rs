@@ -161,6 +161,9 @@ impl Svd {
     }
 
     /// The `i`-th largest singular value.
+    ///
+    /// # Panics
+    /// If there is no such singular value.
     #[must_use]
     #[inline]
     pub fn value(&self, i: usize) -> f64 {
@@ -174,6 +177,9 @@ impl Svd {
     }
 
     /// Left singular vector of the `i`-th value (m entries).
+    ///
+    /// # Panics
+    /// If there is no such singular value.
     #[must_use]
     #[inline]
     pub fn u(&self, i: usize) -> &[f64] {
@@ -181,6 +187,9 @@ impl Svd {
     }
 
     /// Right singular vector of the `i`-th value (n entries).
+    ///
+    /// # Panics
+    /// If there is no such singular value.
     #[must_use]
     #[inline]
     pub fn v(&self, i: usize) -> &[f64] {
@@ -270,6 +279,9 @@ impl Svd {
     }
 
     /// `|A - U S V^T| / |A|` in the Frobenius norm: zero up to rounding for every result.
+    ///
+    /// # Panics
+    /// If the shape of `a` is not that of the decomposition.
     #[must_use]
     pub fn residual(&self, a: &Matrix) -> f64 {
         let largest = a.max_abs();

@@ -141,6 +141,9 @@ impl ActuationMap {
     /// assert!(again.iter().zip(y).all(|(a, b)| (a - b).abs() < 1e-12));
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If `desired` has fewer entries than the motions have rows.
     #[must_use]
     pub fn project(&self, desired: &[f64]) -> Vec<f64> {
         let along = |j: usize| {

@@ -57,6 +57,9 @@ impl ClosedChain {
     /// assert!(twists.len() == 2 && twists.iter().all(|twist| twist.linear.z == 0.0));
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
+    ///
+    /// # Panics
+    /// If the state is of another mechanism.
     #[must_use]
     pub fn reference_twists(&self, state: &State) -> Vec<Twist> {
         let parts = MotionSpace::of(&self.constraint).relation().motions();

@@ -203,6 +203,9 @@ impl Mobility {
     }
 
     /// From the motion space and the relation of this constraint.
+    ///
+    /// # Panics
+    /// If they are those of a constraint of other sizes.
     #[must_use]
     pub fn from_parts(constraint: &Constraint, motions: &MotionSpace, relation: &Relation) -> Self {
         const A: RowSelection = RowSelection { actuated: true, passive: false, object: false };

@@ -93,7 +93,9 @@ impl Transmission {
     #[must_use]
     pub fn of(screws: &LimbScrews, generic: &GenericMobility) -> Option<Self> {
         let platform = &screws.platform;
-        let freedoms = platform.d() - generic.branches.iter().map(|b| b.zero_torque).min()?;
+        let least = generic.branches.iter().map(|b| b.zero_torque).min()?;
+        // More only if they are those of another mechanism.
+        let freedoms = platform.d().checked_sub(least)?;
         let own: Vec<(usize, &Actuator)> = screws
             .limbs
             .iter()

@@ -253,6 +253,7 @@ impl LoopMotions {
     /// loops permit it.
     pub(in crate::control) fn close(&self, q: &mut [f64]) {
         let coordinates = self.mechanism.coordinates();
+        let q = &mut q[..coordinates.len()];
         let actuated: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
         for prescribed in [actuated, self.locked.clone()] {
             match assemble(&self.mechanism, q, &prescribed) {

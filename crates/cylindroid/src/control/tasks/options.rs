@@ -214,7 +214,7 @@ pub(super) fn check(
         options.joint_weights.iter().try_for_each(|w| positive("joint weight", *w))?;
     }
     if let Some(c) = &options.collisions
-        && mechanism.check_frame(c.model.mechanism().tool()).is_err()
+        && !c.model.fits(mechanism)
     {
         let name = c.model.mechanism().name();
         let reason = format!("the collision model is of '{name}'; make one of this mechanism");

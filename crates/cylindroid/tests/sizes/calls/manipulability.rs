@@ -1,0 +1,60 @@
+//! Public functions of the module.
+
+use super::prelude::*;
+
+calls! {
+    manipulability::Ellipsoid::components;
+    manipulability::Ellipsoid::of;
+    manipulability::Ellipsoid::projection;
+    manipulability::Ellipsoid::section;
+    manipulability::Ellipsoid::seen;
+    manipulability::EllipsoidView::name;
+    manipulability::Index::description;
+    manipulability::Index::name;
+    manipulability::Index::values;
+    manipulability::Manipulability::active_force;
+    manipulability::Manipulability::of;
+    manipulability::Manipulability::passive_force;
+    manipulability::ManipulabilityBatch::analyse;
+    manipulability::ManipulabilityBatch::analyse_into;
+    manipulability::ManipulabilityBatch::column;
+    manipulability::ManipulabilityBatch::generic;
+    manipulability::ManipulabilityBatch::length;
+    manipulability::ManipulabilityBatch::n;
+    manipulability::ManipulabilityBatch::new;
+    manipulability::ManipulabilityBatch::reference;
+    manipulability::Measure::name;
+    manipulability::Metrics::characteristic_length;
+    manipulability::Metrics::for_task;
+    manipulability::Metrics::is_dual;
+    manipulability::Metrics::with_inertia;
+    manipulability::Metrics::with_joint;
+    manipulability::Metrics::with_joint_inertia;
+    manipulability::Metrics::with_object;
+    manipulability::Metrics::with_torque;
+    manipulability::Metrics::with_torque_limits;
+    manipulability::Metrics::with_velocity_limits;
+    manipulability::Metrics::with_wrench;
+    manipulability::Pair::angle;
+    manipulability::Pair::efficiency;
+    manipulability::Spectrum::anisotropy;
+    manipulability::Spectrum::largest;
+    manipulability::Spectrum::semi_axes;
+    manipulability::Spectrum::smallest;
+    manipulability::Spectrum::values;
+    manipulability::Spectrum::volume;
+    manipulability::Stiffness::at;
+    manipulability::Stiffness::cholesky;
+    manipulability::Stiffness::compliance_at;
+    manipulability::Stiffness::deflection;
+    manipulability::Stiffness::eigenscrews;
+    manipulability::Stiffness::of;
+    manipulability::actuated_inertia;
+    manipulability::body_inertia = |s: &'static State, of: FrameId| { s.mechanism().check_frame(of).is_ok().then(|| manipulability::body_inertia(s, of)).flatten() };
+    manipulability::force_polytope;
+    manipulability::force_range;
+    manipulability::gradient;
+    manipulability::internal_force_manipulability;
+    manipulability::velocity_polytope;
+    manipulability::velocity_range;
+}
