@@ -438,6 +438,12 @@ fn sweeps(world: &mut World) {
     all(world, &[Sense::Minimise]);
     let axes = vec![Axis { name: "x".to_owned(), count: 2, ..axis }];
     all(world, &[MapOptions::default(), MapOptions { axes, starts: 1, ..Default::default() }]);
+    let components = vec!["x".to_owned()];
+    all(
+        world,
+        &[ZoneOptions::default(), ZoneOptions { components, rays: 1, ..Default::default() }],
+    );
+    all(world, &ZoneShape::ALL);
     let objective = DesignObjective::named("condition", Sense::Minimise).ok();
     let (designs, starts, evaluations) = (1, 0, 1);
     let sweep =

@@ -369,4 +369,7 @@ values! {
     sweep::VelocityMetric,
     sweep::WorkingMode,
     sweep::WriteOptions,
+    sweep::Zone,
+    sweep::ZoneOptions,
+    sweep::ZoneShape,
 }

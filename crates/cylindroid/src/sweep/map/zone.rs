@@ -58,8 +58,8 @@ impl ZoneShape {
 /// A zone that is sought. [`Zone::of`] checks all of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ZoneOptions {
-    /// Components of the platform's pose, as in [`MapOptions::axes`], or actuated coordinates of joints
-    /// (then all others of these keep their value): those of one kind.
+    /// Components of the platform's pose, as in [`axes`](crate::sweep::MapOptions::axes) of maps, or
+    /// actuated coordinates of joints (then all others of these keep their value): those of one kind.
     pub components: Vec<String>,
     /// The lengths of the axes of the ball, or half the sides of the box, for a size of 1 (m or rad).
     /// Empty: 1 where all components are lengths or all are angles, otherwise the characteristic length
@@ -68,7 +68,7 @@ pub struct ZoneOptions {
     /// Ball or box.
     pub shape: ZoneShape,
     /// Values of components of the pose, or `None` where one is free. Those of the zone are its centre;
-    /// the others as in [`MapOptions::held`].
+    /// the others as in [`held`](crate::sweep::MapOptions::held) of maps.
     pub held: Vec<(String, Option<f64>)>,
     /// The platform: the reference of a closed chain, otherwise the tool, by default.
     pub end_effector: Option<EndEffector>,

@@ -55,5 +55,8 @@ calls! {
     sweep::VelocityMetric::name;
     sweep::VelocityMetric::named;
     sweep::WorkingMode::cells;
+    sweep::Zone::of;
+    sweep::ZoneShape::name;
+    sweep::ZoneShape::named;
     sweep::parquet_configurations;
 }
