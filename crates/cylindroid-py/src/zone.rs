@@ -1,5 +1,6 @@
 //! Singularity-free zones: the largest ball or box around a configuration.
 
+use cylindroid::Error;
 use cylindroid::sweep::{Zone, ZoneOptions, ZoneShape};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -190,17 +191,27 @@ pub(crate) fn singularity_free_zone<'py>(
         held.push((entry("at", &name)?, Some(entry("at", &value)?)));
     }
     held.extend(free.unwrap_or_default().into_iter().map(|name| (name, None)));
+    let start = q.as_ref().map(|q| q.vector(&mechanism, "q").map(<[f64]>::to_vec)).transpose()?;
+    if let Some(start) = &start {
+        mechanism.check_q("q", start)?;
+    }
     let options = ZoneOptions {
         components,
         scales: scales.unwrap_or_default(),
         shape: ZoneShape::named(shape)?,
         held,
         end_effector: Some(robot.reference_or_tool(frame, tool.as_ref())?),
-        start: q.as_ref().map(|q| q.vector(&mechanism, "q").map(<[f64]>::to_vec)).transpose()?,
+        start,
         limits,
         rays,
         seed,
     };
-    let zone = py.detach(|| Zone::of(&mechanism, options))?;
+    let named = |error| match error {
+        Error::InvalidOption { option: "start", value, reason } => {
+            Error::InvalidOption { option: "q", value, reason }
+        }
+        other => other,
+    };
+    let zone = py.detach(|| Zone::of(&mechanism, options)).map_err(named)?;
     Ok(PyZone { zone })
 }
