@@ -156,6 +156,7 @@ impl Numbers<'_> {
     pub(crate) fn twist_columns(&self, name: &'static str) -> Result<Matrix> {
         let m = self.matrix(name)?;
         check_twists(name, &m)?;
+        Error::check_finite(name, m.as_slice())?;
         Ok(m)
     }
 

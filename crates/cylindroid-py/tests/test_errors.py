@@ -88,3 +88,10 @@ def test_memory_that_is_not_there():
     huge = np.lib.stride_tricks.as_strided(q, (1 << 45, 7), (0, 8))
     with pytest.raises((MemoryError, ValueError)):
         panda.fk(huge)
+
+
+def test_an_infinite_jacobian_is_named():
+    J = np.full((6, 3), np.inf)
+    for call in (lambda: cy.hyperbolic_svd(J, 0.1), lambda: cy.ScrewSystem(J), lambda: cy.gram(J, 0.1)):
+        with pytest.raises(cy.NotFiniteError, match=r"^J\[0\] is not finite"):
+            call()
