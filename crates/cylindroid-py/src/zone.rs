@@ -29,8 +29,9 @@ use crate::mechanism::PyMechanism;
 ///     multiples of the scales), 'point' (the components) and 'q' (the configuration). Empty if nothing
 ///     was met up to half a turn or four characteristic lengths.
 /// confirmed, certified : int
-///     Rays from the centre of this length that met nothing, and those along which it is proven that
-///     there is none.
+///     Rays from the centre of this length that met nothing, and those on each step of which the
+///     Jacobians change by less than their smallest singular values: none vanishes if they change
+///     linearly within a step.
 /// q : ndarray, (n,)
 ///     The configuration in the centre.
 #[pyclass(frozen, module = "cylindroid", name = "Zone")]
@@ -120,8 +121,7 @@ fn named<'py>(py: Python<'py>, values: &[(&str, f64)]) -> PyResult<Bound<'py, Py
 ///
 /// Rays from the centre follow the mode of `q` to the first singularity or position limit; from there
 /// the nearest point is found by descent on the locus, to rounding. The smallest distance is the size:
-/// nothing larger is free. That nothing is nearer is proven only along the rays that are counted as
-/// certified.
+/// nothing larger is free. That nothing is nearer is checked only along rays.
 ///
 /// Parameters
 /// ----------

@@ -12,8 +12,9 @@ The largest ball or box around a configuration without singularities
 In components of the platform's pose (the reference of a closed chain, or the tool of an arm) or in \
 coordinates of actuated joints. Rays from the centre follow the mode of --q to the first singularity \
 or position limit; from there the nearest point is found by descent on the locus, to rounding. The \
-smallest distance is the size: nothing larger is free. That nothing is nearer is proven only along \
-the rays that are counted as certified; more --rays look more closely.";
+smallest distance is the size: nothing larger is free. That nothing is nearer is checked only along \
+rays; on those counted as certified each step was short enough for the change of the Jacobians. \
+More --rays look more closely.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:

@@ -23,7 +23,7 @@ struct ZoneJson<'a> {
     bounds: Vec<BoundJson<'a>>,
     /// Rays of the length of the size that met nothing.
     confirmed: usize,
-    /// Those along which this is proven.
+    /// Those of steps that were short enough for the change of the Jacobians.
     certified: usize,
     q: &'a [f64],
 }

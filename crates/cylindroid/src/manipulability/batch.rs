@@ -131,7 +131,8 @@ impl ManipulabilityBatch {
     /// For a mechanism.
     ///
     /// # Errors
-    /// As [`ClosedChain::of`] and [`Relation::task`](crate::closure::Relation::task); metrics of the wrong size.
+    /// As [`ClosedChain::of`] and [`Relation::task`](crate::closure::Relation::task); metrics of the
+    /// wrong size.
     pub fn new(mechanism: &Mechanism, options: &BatchOptions) -> Result<Self> {
         let BatchOptions { reference, length, ref metrics, ref task, generic } = *options;
         let home = mechanism.state(mechanism.home())?;

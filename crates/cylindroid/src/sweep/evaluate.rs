@@ -437,7 +437,7 @@ fn measures(
     if options.metric == VelocityMetric::Limits {
         metrics = metrics.with_velocity_limits(&velocity_limits(mechanism, &chain.actuated)?)?;
     }
-    let task = options.task.map(|_| task_map(task, chain.constraint.object()));
+    let task = options.task.map(|_| task_map(task, mechanism.dimension().components()));
     // The unit metric of a task is that of its own numbers.
     if let (Some(map), true) = (&task, options.metric != VelocityMetric::Unit) {
         metrics = metrics.for_task(map)?;
@@ -447,10 +447,10 @@ fn measures(
     ManipulabilityBatch::new(mechanism, &options)
 }
 
-/// Components of a twist of `size` numbers, three in the plane, as a map.
-fn task_map(components: &[usize], size: usize) -> Matrix {
-    let place = |i: usize| if size == 3 && i == 5 { 2 } else { i };
-    Matrix::from_fn(components.len(), size, |i, j| f64::from(u8::from(place(components[i]) == j)))
+/// Components of the twist `all`, three in the plane, as a map.
+fn task_map(components: &[usize], all: &[usize]) -> Matrix {
+    let entry = |i: usize, j: usize| f64::from(u8::from(components[i] == all[j]));
+    Matrix::from_fn(components.len(), all.len(), entry)
 }
 
 /// The row of an error within a block.

@@ -142,8 +142,9 @@ fn zones_of_a_3rpr_are_those_of_its_determinant() {
             assert!((found.size - expected).abs() < 1e-9, "{turn}: {} {expected}", found.size);
             let p = &found.bounds[0].point;
             assert!(of_three_legs([p[0], p[1], turn]).abs() < 1e-9, "{p:?}");
-            assert_eq!(found.confirmed, found.certified.max(found.confirmed));
-            assert!(found.confirmed > 60);
+            // All rays but those along the components that end at other bounds.
+            assert!(found.confirmed >= 64, "{}", found.confirmed);
+            assert!(found.certified > 50, "{} of {}", found.certified, found.confirmed);
         }
         // Lengths beside an angle.
         let scales = vec![1.0, 1.0, 0.8];
@@ -153,6 +154,38 @@ fn zones_of_a_3rpr_are_those_of_its_determinant() {
             |d: &[f64]| first_root(|t| of_three_legs([t * d[0], t * d[1], 0.8 * t * d[2]]), 3.9);
         let expected = smallest(3, on_box, along);
         assert!((found.size - expected).abs() < 1e-8, "{shape:?}: {} {expected}", found.size);
+    }
+}
+
+/// A platform that is moved, turned and scaled, with its legs in another order, has the same zone.
+#[test]
+fn zones_do_not_depend_on_frame_size_and_order() {
+    const LIMITS: &str = "limits = { lower = -20, upper = 20 }";
+    let (sin, cos) = 0.7_f64.sin_cos();
+    for shape in [ZoneShape::Ball, ZoneShape::Box] {
+        // The sides of a box do not turn with the mechanism.
+        let (sin, cos) = if shape == ZoneShape::Box { (0.0, -1.0) } else { (sin, cos) };
+        let size = |mechanism: &Mechanism, scale: f64, at: [f64; 2]| {
+            let centre = held(&[("x", at[0]), ("y", at[1]), ("rz", 0.0)]);
+            let options = ZoneOptions { shape, held: centre, ..ZoneOptions::default() };
+            let plane = zone(mechanism, &["x", "y"], options.clone());
+            let scales = vec![scale, scale, 0.8];
+            let all = zone(mechanism, &["x", "y", "rz"], ZoneOptions { scales, ..options });
+            assert_eq!(plane.bounds[0].kind, LocusKind::TypeTwo);
+            [plane.size / scale, all.size]
+        };
+        let expected = size(&three_rpr(BASE, PLATFORM, LIMITS), 1.0, [0.0, 0.0]);
+        // The platform's home, and with it the characteristic length, stays where it is.
+        for (scale, order, at) in [(2.0, [2, 0, 1], [0.4, -0.3]), (0.1, [1, 0, 2], [-0.03, 0.05])] {
+            let turned =
+                |[x, y]: [f64; 2]| [cos * x - sin * y, sin * x + cos * y].map(|c| scale * c);
+            let base = order.map(|i| turned(BASE[i])).map(|[x, y]| [x + at[0], y + at[1]]);
+            let platform = order.map(|i| turned(PLATFORM[i]));
+            let found = size(&three_rpr(base, platform, LIMITS), scale, at);
+            for (a, b) in found.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-8 * b, "{shape:?} {scale}: {found:?} {expected:?}");
+            }
+        }
     }
 }
 

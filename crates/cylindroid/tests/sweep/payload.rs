@@ -3,7 +3,7 @@
 use cylindroid::closure::{ClosedChain, MotionSpace, joint_torques};
 use cylindroid::model::JointLimits;
 use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions};
-use cylindroid::{Mechanism, Vec3};
+use cylindroid::{Mechanism, Rotation, Vec3};
 
 use crate::configurations;
 
@@ -33,6 +33,20 @@ fn torques_of_an_arm_reach_a_limit() {
             assert!((most - 1.0).abs() < 1e-9, "{most}");
         }
     }
+}
+
+/// An arm that turns about its first axis bears the same along a direction that turns with it.
+#[test]
+fn payloads_turn_with_the_arm() {
+    let arm = cylindroid::load("panda").unwrap();
+    let q = vec![0.3, -0.6, 0.4, -2.0, 0.5, 1.7, -0.3];
+    let (direction, turn) = (Vec3::new(0.5, 0.2, -0.7), 0.9);
+    let mut turned = q.clone();
+    turned[0] += turn;
+    let (_, here) = payloads(&arm, Source::Configurations(q), direction);
+    let direction = Rotation::exp(Vec3::Z * turn) * direction;
+    let (_, there) = payloads(&arm, Source::Configurations(turned), direction);
+    assert!((here[0] / there[0] - 1.0).abs() < 1e-12, "{here:?} {there:?}");
 }
 
 /// A planar arm of links 1 and 1: along x only the height of the joints below the tip loads them.

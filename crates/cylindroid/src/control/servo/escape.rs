@@ -162,7 +162,9 @@ impl Escape {
     pub(super) fn solve(&mut self, task: Linearised<'_>, edge: &mut Edge<'_>, folds: bool) -> bool {
         let n = self.rates.len();
         let size = norm(&self.error);
-        edge.load(&self.error, &mut self.hessian);
+        if !folds {
+            edge.load(&self.error, &mut self.hessian); // otherwise loaded already
+        }
         for i in 0..n {
             self.gradient[i] = dot(task.j.column(i), &self.error);
             for k in 0..n {

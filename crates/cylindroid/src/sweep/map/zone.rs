@@ -5,14 +5,13 @@
 //! Method   rays from the centre (zone_rays.rs) end at the first singularity or limit, or at the
 //!          smallest distance known; from each singular end the nearest point of its locus is found by
 //!          descent (nearest_singularity.rs) and kept if the way from the centre to it meets nothing
-//!          before. The smallest distance is the size. Rays that pass an obstruction lead to it likewise:
-//!          a wrist singularity has a smaller dimension in the space of the tool, where no ray meets it
+//!          before. The smallest distance is the size. Rays that pass near a singularity lead to it
+//!          too: that of a wrist has a smaller dimension in the space of the tool, where no ray meets it
 //! Units    e_i = (component - centre) / scale; the size is in multiples of the scales
-//! Valid    mechanisms in which the components leave no motion free, and whose singularities are surfaces:
-//!          with redundant joints they are not
-//! Proven   the bounds are singular to rounding (or at a limit), so no ball or box is larger. That
-//!          nothing is closer is proven along the certified rays alone: the zone is as certain as they are
-//!          dense
+//! Valid    mechanisms in which the components leave no motion free, and whose singularities are
+//!          surfaces: with redundant joints they are not. The bounds are singular to rounding, or at a
+//!          limit, so no ball or box is larger; where Newton's method does not get there, a ray ends
+//!          before the singularity. That nothing is nearer is checked along rays alone
 //! Source   Li, Gosselin & Richard 2007; Jiang & Gosselin 2009 (maximal singularity-free zones of
 //!          Gough-Stewart platforms, there by the determinant in closed form)
 //! Checked  tests/map/zone.rs
@@ -142,7 +141,8 @@ pub struct Zone {
     pub bounds: Vec<ZoneBound>,
     /// Number of rays of the length of the size that met nothing before.
     pub confirmed: usize,
-    /// Number of those along which it is proven that no singularity lies.
+    /// Number of those on each step of which the Jacobians change by less than their smallest singular
+    /// values: none vanishes if they change linearly within a step.
     pub certified: usize,
     /// The configuration in the centre (m or rad).
     pub q: Vec<f64>,

@@ -4,9 +4,9 @@
 //!          the coordinates that follow; a step is certified if |J' - J| <= (s + s') / 2 for the other
 //!          block J as well, in the Frobenius norm, and halved otherwise down to a share of the ray
 //! Units    those of the zone
-//! Proven   on a certified ray no singular value vanishes: by Weyl's inequality it differs from that at
-//!          the nearer end of a step by less than what it has there, as far as the block is linear
-//!          within the step; steps that are not certified compare signs only
+//! Valid    on a certified ray no singular value vanishes if the block is linear within each step: by
+//!          Weyl's inequality it differs from that at the nearer end by less than what it has there.
+//!          Steps that are not certified compare signs only
 //! Checked  tests/map/zone.rs
 
 use crate::closure::{CentredNorm, Obstruction, PathNode, PlatformPath, SignedSingularity};

@@ -234,8 +234,7 @@ impl Search {
             let shares = direction.iter().zip(farthest).map(|(d, most)| most / d.abs());
             shares.fold(f64::INFINITY, f64::min)
         };
-        let mut size =
-            (0..self.farthest.len()).map(|i| self.farthest[i]).fold(f64::INFINITY, f64::min);
+        let mut size = self.farthest.iter().copied().fold(f64::INFINITY, f64::min);
         let fixed = self.directions.fixed();
         let mut shots = Vec::with_capacity(fixed + self.count);
         for number in 0..fixed + self.count {

@@ -110,12 +110,12 @@ fn a_straight_elbow_opens() {
     }
 }
 
-/// Two links of 1 m, the elbow within limits.
-fn arm(lower: f64, upper: f64) -> Mechanism {
+/// Two links of this length (m), the elbow within limits.
+fn arm(link: f64, lower: f64, upper: f64) -> Mechanism {
     let mut b = Mechanism::builder("2r");
     for (i, (lower, upper)) in [(-3.0, 3.0), (lower, upper)].into_iter().enumerate() {
         b.joint(JointSpec {
-            parent_from_joint: Pose::from_translation(Vec3::X * i as f64),
+            parent_from_joint: Pose::from_translation(Vec3::X * link * i as f64),
             limits: Limits { lower, upper, velocity: 2.0, ..Limits::NONE },
             ..JointSpec::new(
                 &format!("q{i}"),
@@ -125,7 +125,7 @@ fn arm(lower: f64, upper: f64) -> Mechanism {
             )
         });
     }
-    b.frame("tip", "l2", Pose::from_translation(Vec3::X)).tool("tip");
+    b.frame("tip", "l2", Pose::from_translation(Vec3::X * link)).tool("tip");
     b.build().unwrap()
 }
 
@@ -134,31 +134,35 @@ fn arm(lower: f64, upper: f64) -> Mechanism {
 fn the_elbow_opens_where_its_limits_leave_room() {
     let target = Pose::from_translation(Vec3::new(1.5, 0.0, 0.0));
     for (lower, upper) in [(-2.5, 0.5), (-0.5, 2.5), (0.0, 2.5), (-2.5, 0.0)] {
-        let robot = arm(lower, upper);
+        let robot = arm(1.0, lower, upper);
         let mut servo = servo(&robot, |o| o.task = Task::POSITION);
         let outcome = run_checked(&robot, &mut servo, &[0.0, 0.0], target);
         assert!(outcome.reached, "{lower} {upper}: {outcome:?}");
         assert_eq!(outcome.q[1] > 0.0, upper > -lower);
     }
     // With room on neither side it stalls at its limits.
-    let robot = arm(-0.1, 0.1);
+    let robot = arm(1.0, -0.1, 0.1);
     let mut servo = servo(&robot, |o| o.task = Task::POSITION);
     let outcome = run_checked(&robot, &mut servo, &[0.0, 0.0], target);
     assert_eq!(outcome.stall, Some(Stall::Limits { coordinates: vec![1] }), "{outcome:?}");
 }
 
 /// An arm that stands just beyond straight, on the side where a limit is near, folds to the other one
-/// when its target comes back inside.
+/// when its target comes back inside: whatever its size, its direction and its hand.
 #[test]
 fn a_stretched_arm_folds_to_the_side_with_room() {
-    let robot = arm(-2.5, 0.3);
-    for method in Method::ALL {
-        for start in [1e-4, 1e-3, 5e-3, 0.01] {
-            let mut servo = servo(&robot, |o| (o.task, o.method) = (Task::POSITION, method));
-            let target = Pose::from_translation(Vec3::new(1.5, 0.2, 0.0));
-            let outcome = run_checked(&robot, &mut servo, &[-start / 2.0, start], target);
-            assert!(outcome.reached, "{} from {start}: {outcome:?}", method.name());
-            assert!(outcome.q[1] < 0.0);
+    for (link, turn, hand) in [(1.0, 0.0, 1.0), (0.2, 2.0, 1.0), (5.0, -1.0, -1.0)] {
+        let robot = if hand > 0.0 { arm(link, -2.5, 0.3) } else { arm(link, -0.3, 2.5) };
+        let way = Rotation::exp(Vec3::Z * turn) * Vec3::new(1.5, 0.2 * hand, 0.0);
+        let target = Pose::from_translation(way * link);
+        for method in Method::ALL {
+            for start in [1e-4, 1e-3, 5e-3, 0.01].map(|x| hand * x) {
+                let mut servo = servo(&robot, |o| (o.task, o.method) = (Task::POSITION, method));
+                let q = [turn - start / 2.0, start];
+                let outcome = run_checked(&robot, &mut servo, &q, target);
+                assert!(outcome.reached, "{link} {} from {start}: {outcome:?}", method.name());
+                assert!(outcome.q[1] * hand < 0.0);
+            }
         }
     }
 }
