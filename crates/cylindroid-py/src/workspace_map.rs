@@ -1,6 +1,7 @@
 //! Maps: the workspace in the coordinates of the platform, with singularity loci.
 
 use cylindroid::sweep::{Locus, Map, MapOptions, WorkingMode};
+use cylindroid::{Error, Mechanism};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -192,21 +193,50 @@ pub(crate) fn workspace_map<'py>(
 ) -> Result<PyWorkspaceMap> {
     let robot = &*mechanism;
     let mechanism = robot.inner.clone();
-    let mut held: Vec<(String, Option<f64>)> = Vec::new();
-    for (name, value) in at.iter().flat_map(|at| at.iter()) {
-        held.push((entry("at", &name)?, Some(entry("at", &value)?)));
-    }
-    held.extend(free.unwrap_or_default().into_iter().map(|name| (name, None)));
     let options = MapOptions {
         axes: axes(&over)?,
-        held,
+        held: held(at.as_ref(), free)?,
         end_effector: Some(robot.reference_or_tool(frame, tool.as_ref())?),
-        start: q.as_ref().map(|q| q.vector(&mechanism, "q").map(<[f64]>::to_vec)).transpose()?,
+        start: start(q.as_ref(), &mechanism)?,
         starts,
         seed,
         loci,
     };
-    let map = py.detach(|| Map::of(&mechanism, options))?;
+    let map = py.detach(|| Map::of(&mechanism, options)).map_err(of_start)?;
     let names = mechanism.coordinates().iter().map(|c| c.name.clone()).collect();
     Ok(PyWorkspaceMap { map, names })
+}
+
+/// The components that are held, and those that are free.
+pub(crate) fn held(
+    at: Option<&Bound<'_, PyDict>>,
+    free: Option<Vec<String>>,
+) -> Result<Vec<(String, Option<f64>)>> {
+    let mut held = Vec::new();
+    for (name, value) in at.iter().flat_map(|at| at.iter()) {
+        held.push((entry("at", &name)?, Some(entry("at", &value)?)));
+    }
+    held.extend(free.unwrap_or_default().into_iter().map(|name| (name, None)));
+    Ok(held)
+}
+
+/// The configuration to start at, which is called `q`.
+pub(crate) fn start(
+    q: Option<&Coordinates<'_>>,
+    mechanism: &Mechanism,
+) -> Result<Option<Vec<f64>>> {
+    let Some(q) = q else { return Ok(None) };
+    let start = q.vector(mechanism, "q")?;
+    mechanism.check_q("q", start)?;
+    Ok(Some(start.to_vec()))
+}
+
+/// An error about the start, named as the argument.
+pub(crate) fn of_start(error: Error) -> Error {
+    match error {
+        Error::InvalidOption { option: "start", value, reason } => {
+            Error::InvalidOption { option: "q", value, reason }
+        }
+        other => other,
+    }
 }

@@ -1,6 +1,5 @@
 //! Singularity-free zones: the largest ball or box around a configuration.
 
-use cylindroid::Error;
 use cylindroid::sweep::{Zone, ZoneOptions, ZoneShape};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -8,8 +7,9 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arrays::Numbers;
 use crate::coordinates::Coordinates;
-use crate::error::{Result, argument, count, entry};
+use crate::error::{Result, argument, count};
 use crate::mechanism::PyMechanism;
+use crate::workspace_map::{held, of_start, start};
 
 /// A ball or box without singularities.
 ///
@@ -186,32 +186,17 @@ pub(crate) fn singularity_free_zone<'py>(
 ) -> Result<PyZone> {
     let robot = &*mechanism;
     let mechanism = robot.inner.clone();
-    let mut held: Vec<(String, Option<f64>)> = Vec::new();
-    for (name, value) in at.iter().flat_map(|at| at.iter()) {
-        held.push((entry("at", &name)?, Some(entry("at", &value)?)));
-    }
-    held.extend(free.unwrap_or_default().into_iter().map(|name| (name, None)));
-    let start = q.as_ref().map(|q| q.vector(&mechanism, "q").map(<[f64]>::to_vec)).transpose()?;
-    if let Some(start) = &start {
-        mechanism.check_q("q", start)?;
-    }
     let options = ZoneOptions {
         components,
         scales: scales.unwrap_or_default(),
         shape: ZoneShape::named(shape)?,
-        held,
+        held: held(at.as_ref(), free)?,
         end_effector: Some(robot.reference_or_tool(frame, tool.as_ref())?),
-        start,
+        start: start(q.as_ref(), &mechanism)?,
         limits,
         rays,
         seed,
     };
-    let named = |error| match error {
-        Error::InvalidOption { option: "start", value, reason } => {
-            Error::InvalidOption { option: "q", value, reason }
-        }
-        other => other,
-    };
-    let zone = py.detach(|| Zone::of(&mechanism, options)).map_err(named)?;
+    let zone = py.detach(|| Zone::of(&mechanism, options)).map_err(of_start)?;
     Ok(PyZone { zone })
 }

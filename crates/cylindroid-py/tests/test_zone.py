@@ -46,3 +46,13 @@ def test_input_is_checked():
     ]:
         with pytest.raises(kind):
             call()
+
+
+def test_the_configuration_is_named_as_in_the_call():
+    robot = cy.load("five-bar")
+    for call in (
+        lambda q: cy.singularity_free_zone(robot, ["x", "y"], q=q),
+        lambda q: cy.workspace_map(robot, {"x": (-1, 3, 5), "y": (0, 3, 5)}, q=q),
+    ):
+        with pytest.raises(cy.DimensionError, match=r"^q has 1 entries"):
+            call([0.0])
