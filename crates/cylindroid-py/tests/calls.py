@@ -125,6 +125,7 @@ GOALS = {
     "tasks": [cy.GazeTask("hand_tcp", [0.6, 0.2, 0.0])],
     "half_spaces": [cy.HalfSpace("link4", [0.0, 0, -1], [0.0, 0, 1])],
     "posture": [0.0] * 7,
+    "maximise": None,
 }
 TOLERANCES = {"tolerance_position": 1e-5, "tolerance_orientation": 1e-5, "seed": 1, "iterations": 99}
 SPEEDS = {"speed": 1.0, "acceleration": [1.0, 2], "jerk": 9.0}

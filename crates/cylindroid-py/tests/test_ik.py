@@ -202,7 +202,12 @@ def test_goals_beside_frames():
         (lambda: r.ik(), "target"),
         (lambda: r.ik(tasks=[]), "tasks"),
         (lambda: r.ik(tasks=tasks, frame="link4"), "belongs to target"),
-        (lambda: r.ik(tasks=[cy.LimitAvoidanceTask()]), "limit_avoidance"),
+        (lambda: r.ik(tasks=[cy.LimitAvoidanceTask()]), "goals"),
+        (lambda: r.ik(tasks=[*tasks, cy.LimitAvoidanceTask(), cy.LimitAvoidanceTask(margin=0.2)]),
+         "one criterion"),
+        (lambda: r.ik(tasks=[*tasks, cy.LimitAvoidanceTask()], maximise="manipulability"),
+         "a task for a criterion"),
+        (lambda: r.ik(tasks=tasks, maximise="manipulability", nearest=True), "nearest"),
         (lambda: r.ik(tasks=[cy.PostureTask(q), *tasks], posture=q), "PostureTask"),
         (lambda: r.ik(tasks=[cy.PostureTask(q)]), "goals"),
     ]:
@@ -233,6 +238,36 @@ def test_half_spaces_and_postures():
         assert found.success and np.allclose(found.q, best.q, atol=1e-3)
     with pytest.raises(cy.DimensionError):
         r.ik(r.fk(q), posture=[0.0])
+
+
+def test_criteria():
+    r = cy.load("panda")
+    q = np.array([0.3, -0.4, 0.2, -2.0, 0.1, 1.7, 0.5])
+    target = r.fk(q)
+    length = r.reach
+
+    def volume(q):
+        j = r.jacobian(q, reference="local_world_aligned")
+        j[:3] /= r.reach
+        return np.sqrt(np.linalg.det(j @ j.T))
+
+    best = r.ik(target, maximise="manipulability")
+    assert best.success and best.criterion == pytest.approx(volume(best.q), rel=1e-9)
+    others = r.ik_all(target, 100)
+    assert best.criterion >= max(volume(other) for other in others) * (1 - 1e-6)
+    same = r.ik(target, tasks=[cy.ManipulabilityTask(r.tool)])
+    assert same.criterion == pytest.approx(best.criterion, rel=1e-6)
+    all_best = r.ik_all(target, 100, maximise="manipulability")
+    np.testing.assert_allclose(all_best[0], best.q, atol=1e-9)
+    away = r.ik([target, target], maximise="limit-avoidance")
+    assert away.success.all() and away.criterion[0] <= 0
+    assert away.criterion[0] >= r.ik(target, tasks=[cy.LimitAvoidanceTask(margin=0.5)]).criterion - 1e-6
+    assert r.ik(target).criterion is None
+    with pytest.raises(cy.UnknownNameError, match="manipulability"):
+        r.ik(target, maximise="manipulabilty")
+    stewart = cy.load("stewart")
+    with pytest.raises(cy.InvalidOptionError, match="criterion"):
+        stewart.ik(stewart.fk(stewart.home), maximise="limit-avoidance")
 
 
 def test_what_cannot_be_reached():

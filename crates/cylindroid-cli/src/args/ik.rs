@@ -28,6 +28,11 @@ further goals from a file: frames seen from others, the centre of mass, gaze, ha
 not left, a posture. With --avoid or --obstacle links keep a distance from each other and from \
 obstacles.
 
+--maximise takes from what the goals leave free the best of the maxima to which random restarts lead: \
+manipulability is Yoshikawa's measure of the first frame and its components (lengths over the \
+characteristic length), limit-avoidance minus half of the sum of squares of the shares by which \
+joints are away from the middles of their ranges.
+
 Exit code 0 if the target is reached, 1 if not, 2 on an error.";
 
 pub(crate) const EXAMPLES: &str = "\
@@ -35,13 +40,15 @@ Examples:
   cylindroid ik panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6
   cylindroid ik ur5e --to 0.3,0.4,0.5 --rpy 3.1416,0,0 --all 8
   cylindroid ik panda --to 0.45,0.15,0.35 --q 0,-0.5,0,-2,0,1.5,0.7 --nearest
+  cylindroid ik panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --maximise manipulability
   cylindroid ik panda --tasks docs/goals.toml
   cylindroid ik five-bar --to 1,1.5,0 --all 4
   cylindroid ik docs/cell.toml --to 0.4,0,0.4 --avoid --obstacle ball=sphere:0.1@0.4,0.1,0.3
 
 A file of tasks is one of `move`, see `move --help`. A solution reaches all of its tasks of type \
 frame, relative_frame, center_of_mass and gaze, lies inside every [[half_space]] (frame, point, \
-normal, tool) and [[box]] (frame, center, size, rpy, tool), and is the closest one to its posture. \
+normal, tool) and [[box]] (frame, center, size, rpy, tool), and is the closest one to its posture, \
+or the best one by its task of type manipulability or limit_avoidance. \
 Weights count where not all tasks can be reached; gains, levels, velocities and tolerances do not \
 count.
 
@@ -107,7 +114,11 @@ pub(crate) struct IkArgs {
     #[arg(long, help_heading = "Search")]
     pub(crate) nearest: bool,
 
-    /// Return up to N distinct solutions, the closest to --q first
+    /// Make manipulability or limit-avoidance as large as possible by what the goals leave free
+    #[arg(long, value_name = "CRITERION", conflicts_with = "nearest", help_heading = "Search")]
+    pub(crate) maximise: Option<String>,
+
+    /// Return up to N distinct solutions, the closest to --q first, with --maximise the best
     #[arg(long, value_name = "N", conflicts_with = "nearest", allow_negative_numbers = true)]
     #[arg(help_heading = "Search")]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]

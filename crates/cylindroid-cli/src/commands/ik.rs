@@ -59,6 +59,8 @@ struct IkJson<'a> {
     /// The posture that solutions approach.
     #[serde(skip_serializing_if = "Option::is_none")]
     posture: Option<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    criterion: Option<CriterionJson>,
     /// All solutions.
     solutions: Vec<&'a [f64]>,
     start: &'a [f64],
@@ -98,6 +100,21 @@ struct ReasonJson {
     distance: Option<f64>,
 }
 
+/// What the solution makes as large as possible.
+#[derive(Debug, Serialize)]
+struct CriterionJson {
+    name: &'static str,
+    /// At `q` [-].
+    value: f64,
+}
+
+impl CriterionJson {
+    fn of(options: &IkOptions, found: &Solution) -> Option<Self> {
+        let (criterion, value) = (options.criterion?, found.criterion?);
+        Some(Self { name: criterion.name(), value })
+    }
+}
+
 impl From<&MissReason> for ReasonJson {
     fn from(reason: &MissReason) -> Self {
         let mut json = Self { kind: reason.name(), message: reason.to_string(), ..Self::default() };
@@ -116,7 +133,8 @@ impl From<&MissReason> for ReasonJson {
 pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
     let robot = limited(load(&args.configuration.model, &[])?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
-    let Goals { all: goals, description, half_spaces, posture } = goals(args, &robot, &start)?;
+    let Goals { all: goals, description, half_spaces, posture, criterion } =
+        goals(args, &robot, &start)?;
     let gap = args.avoidance.gap();
     let gap = gap.map_err(|option| {
         anyhow::anyhow!("{option} has no effect without --avoid or --obstacle")
@@ -127,6 +145,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         initial_guess: Some(start.clone()),
         nearest: args.nearest,
         posture,
+        criterion,
         half_spaces,
         seed: args.seed,
         budget: Budget { iterations: args.iterations, time: None },
@@ -189,6 +208,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         goals: several.collect(),
         half_spaces: options.half_spaces.iter().map(|h| h.name.as_str()).collect(),
         posture: options.posture.as_deref(),
+        criterion: CriterionJson::of(&options, first),
         solutions: found.iter().filter(|s| s.success).map(|s| s.q.as_slice()).collect(),
         start: &start,
         target: first_frame.map(|(_, target)| target.into()),
@@ -230,8 +250,12 @@ fn print(
     let result = match (&report.out_of_reach, report.success, found.len()) {
         (_, true, 1) => "reached".to_owned(),
         (_, true, several) => {
-            let from = if report.posture.is_some() { "the posture" } else { "--q" };
-            format!("reached by {several} configurations, the closest to {from} first")
+            let order = match (&report.criterion, report.posture) {
+                (Some(criterion), _) => format!("that of the largest {} first", criterion.name),
+                (None, Some(_)) => "the closest to the posture first".to_owned(),
+                (None, None) => "the closest to --q first".to_owned(),
+            };
+            format!("reached by {several} configurations, {order}")
         }
         (Some(reach), ..) => format!(
             "out of reach: the target is {} m from the first joint, the arm {} m long from there; \
@@ -268,6 +292,12 @@ fn print(
             ("result", result),
             position_error,
             orientation_error,
+            (
+                "maximised [-]",
+                report.criterion.as_ref().map_or_else(String::new, |criterion| {
+                    format!("{} {}", criterion.name, number(criterion.value))
+                }),
+            ),
             ("found by", found_by(report)),
             ("restarts", format!("{}, {} iterations", report.restarts, report.iterations)),
             ("q [rad or m]", output::entries(report.q)),

@@ -124,6 +124,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
             vec!["panda", "--to", "2,0,0.5"],
             vec![CELL, "--task", "hand_tcp=0.4,0,0.4", "--task", "link4=0,0.1,0.65", "--avoid"],
             vec!["panda", "--tasks", GOALS],
+            with(&["panda", "--maximise", "manipulability"], &UP),
         ],
         "move" => vec![
             with(&["panda", "--line"], &UP),

@@ -35,6 +35,31 @@ fn several_answers() {
     );
 }
 
+#[test]
+fn the_best_by_a_criterion() {
+    let target = ["ik", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6"];
+    let command = [&target[..], &["--maximise", "manipulability"]].concat();
+    let report = json(&command, 0);
+    assert_eq!(report["criterion"]["name"], "manipulability");
+    let best = report["criterion"]["value"].as_f64().unwrap();
+    let all = json(&[&command[..], &["--all", "50"]].concat(), 0);
+    assert_eq!(all["q"], report["q"]);
+    assert!(all["solutions"].as_array().unwrap().len() > 1);
+    assert!(json(&target, 0).get("criterion").is_none());
+    let away = [&target[..], &["--maximise", "limit-avoidance"]].concat();
+    assert!(best > 0.0 && json(&away, 0)["criterion"]["value"].as_f64().unwrap() <= 0.0);
+    let table = text(&[&command[..], &["--all", "50"]].concat());
+    assert!(table.contains("that of the largest manipulability first"), "{table}");
+    assert!(text(&command).contains("manipulability"), "{table}");
+    let wrong = [&target[..], &["--maximise", "manipulabilty"]].concat();
+    assert!(refused(&wrong).contains("nearest: manipulability"));
+    let goals = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/goals.toml");
+    let posture = ["ik", "panda", "--tasks", goals, "--maximise", "manipulability"];
+    assert!(refused(&posture).contains("posture"));
+    let loops = ["ik", "stewart", "--to", "0,0,1", "--maximise", "limit-avoidance"];
+    assert!(refused(&loops).contains("criterion"));
+}
+
 /// The loops are closed with the target; the frame is the reference.
 #[test]
 fn working_modes_of_a_closed_chain() {
@@ -163,7 +188,10 @@ fn files_of_goals_are_checked() {
     assert_eq!(report["goals"][0]["reference"], "link4");
     let center = "[[task]]\ntype = 'center_of_mass'\nxyz = [0, 0, 0.4]";
     assert!(refused(&["ik", "panda", "--tasks", &file(&folder, center)]).contains("mass"));
-    let gradient = "[[task]]\ntype = 'limit_avoidance'";
-    let message = refused(&["ik", "panda", "--tasks", &file(&folder, gradient)]);
-    assert!(message.contains("limit_avoidance") && message.contains("gaze"), "{message}");
+    let gradient = file(&folder, "[[task]]\ntype = 'limit_avoidance'\nmargin = 0.3");
+    assert!(refused(&["ik", "panda", "--tasks", &gradient]).contains("neither a frame"));
+    let command = ["ik", "panda", "--to", "0.4,0,0.4", "--tasks", &gradient];
+    assert_eq!(json(&command, 0)["criterion"]["name"], "limit-avoidance");
+    let twice = [&command[..], &["--maximise", "manipulability"]].concat();
+    assert!(refused(&twice).contains("the file of tasks has a criterion"));
 }

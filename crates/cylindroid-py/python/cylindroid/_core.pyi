@@ -1056,6 +1056,7 @@ class Mechanism:
         tasks: Sequence[MotionTask] | None = None,
         half_spaces: Sequence[HalfSpace] | None = None,
         posture: ArrayLike | None = None,
+        maximise: str | None = None,
         collisions: CollisionAvoidance | None = None,
         fixed: Sequence[str] | None = None,
         tolerance_position: float = 1e-06,
@@ -1077,6 +1078,7 @@ class Mechanism:
         tasks: Sequence[MotionTask] | None = None,
         half_spaces: Sequence[HalfSpace] | None = None,
         posture: ArrayLike | None = None,
+        maximise: str | None = None,
         collisions: CollisionAvoidance | None = None,
         fixed: Sequence[str] | None = None,
         tolerance_position: float = 1e-06,
@@ -1580,6 +1582,8 @@ class Solution:
     def restarts(self) -> Any: ...
     @property
     def out_of_reach(self) -> Any: ...
+    @property
+    def criterion(self) -> Any: ...
     @property
     def reason(self) -> Any: ...
     @property

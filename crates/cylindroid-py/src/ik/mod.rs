@@ -78,13 +78,19 @@ impl PyMechanism {
     ///     be reached. Default: 1.
     /// tasks : sequence of MotionTask, optional
     ///     Further goals that a solution reaches: `FrameTask`, `RelativeFrameTask`,
-    ///     `CenterOfMassTask`, `GazeTask`, with their weights; a `PostureTask` is a `posture`. Gains,
-    ///     levels, velocities and tolerances of tasks do not count.
+    ///     `CenterOfMassTask`, `GazeTask`, with their weights; a `PostureTask` is a `posture`, a
+    ///     `ManipulabilityTask` or `LimitAvoidanceTask` what is made largest. Gains, levels,
+    ///     velocities and tolerances of tasks do not count.
     /// half_spaces : sequence of HalfSpace, optional
     ///     Half-spaces that tool points of a solution do not leave, to within `tolerance_position`;
     ///     see also `HalfSpace.inside_box`.
     /// posture : array_like, (n,), optional
     ///     Prefer the solution closest to this configuration. Default: no preference.
+    /// maximise : str, optional
+    ///     'manipulability' (Yoshikawa's measure of the frame and its task, lengths over the
+    ///     characteristic length) or 'limit-avoidance' (joints towards the middles of their ranges):
+    ///     the best of the maxima to which random restarts lead, by what the goals leave free. Default:
+    ///     none. Serial arms only.
     /// collisions : CollisionAvoidance, optional
     ///     A solution keeps the gap between all watched bodies. Default: bodies do not count.
     /// fixed : list of str, optional
@@ -129,6 +135,15 @@ impl PyMechanism {
     /// >>> arm.ik(tasks=[cy.GazeTask(arm.tool, [0.6, 0.2, 0.0])], half_spaces=[table]).success
     /// True
     ///
+    /// The elbow where manipulability is largest:
+    ///
+    /// >>> panda = cy.load("panda")
+    /// >>> target = panda.fk(panda.home)
+    /// >>> best = panda.ik(target, maximise="manipulability")
+    /// >>> held = panda.ik(target, maximise="manipulability", fixed=["panda_joint3"])
+    /// >>> bool(best.criterion > held.criterion)
+    /// True
+    ///
     /// The working modes of a parallel robot, for a point of its platform:
     ///
     /// >>> import numpy as np
@@ -138,7 +153,7 @@ impl PyMechanism {
     /// (4, 4)
     #[pyo3(signature = (target = None, frame = None, q0 = None, *, tool = None, task = None,
         task_axes = None, nearest = false, weights = None, tasks = None, half_spaces = None,
-        posture = None, collisions = None, fixed = None,
+        posture = None, maximise = None, collisions = None, fixed = None,
         tolerance_position = 1e-6, tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn ik(
@@ -155,6 +170,7 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
         #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
         posture: Option<Coordinates<'_>>,
+        #[pyo3(from_py_with = argument)] maximise: Option<&str>,
         #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'_, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
@@ -173,6 +189,7 @@ impl PyMechanism {
             tasks,
             half_spaces,
             posture,
+            maximise,
             tolerance_position,
             tolerance_orientation,
             seed,
@@ -243,8 +260,10 @@ impl PyMechanism {
     /// count : int
     ///     Maximum number of solutions. A redundant arm has infinitely many, of which some are
     ///     returned.
-    /// frame, q0, tool, task, task_axes, weights, tasks, half_spaces, posture, collisions, fixed
-    ///     As `ik`; of a posture the closest solution comes first.
+    /// frame, q0, tool, task, task_axes, weights, tasks, half_spaces, collisions, fixed
+    ///     As `ik`.
+    /// posture, maximise
+    ///     As `ik`: the solution closest to the posture comes first, or the best one.
     /// tolerance_position, tolerance_orientation, seed, iterations
     ///     As `ik`.
     ///
@@ -258,7 +277,7 @@ impl PyMechanism {
     ///     As `ik`.
     #[pyo3(signature = (target = None, count = 8, frame = None, q0 = None, *, tool = None,
         task = None, task_axes = None, weights = None, tasks = None, half_spaces = None,
-        posture = None, collisions = None, fixed = None,
+        posture = None, maximise = None, collisions = None, fixed = None,
         tolerance_position = 1e-6, tolerance_orientation = 1e-6, seed = 0, iterations = 20000))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn ik_all<'py>(
@@ -275,6 +294,7 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] tasks: Option<Vec<Py<PyMotionTask>>>,
         #[pyo3(from_py_with = argument)] half_spaces: Option<Vec<Py<PyHalfSpace>>>,
         posture: Option<Coordinates<'py>>,
+        #[pyo3(from_py_with = argument)] maximise: Option<&str>,
         #[pyo3(from_py_with = argument)] collisions: Option<PyRef<'py, PyCollisionAvoidance>>,
         #[pyo3(from_py_with = argument)] fixed: Option<Vec<String>>,
         #[pyo3(from_py_with = argument)] tolerance_position: f64,
@@ -293,6 +313,7 @@ impl PyMechanism {
             tasks,
             half_spaces,
             posture,
+            maximise,
             tolerance_position,
             tolerance_orientation,
             seed,

@@ -1,8 +1,8 @@
 //! Arguments of inverse kinematics: targets, tolerances, budget.
 
 use cylindroid::Pose;
-use cylindroid::control::{Task, goals_of};
-use cylindroid::ik::{Budget, Goal, IkOptions, Objective};
+use cylindroid::control::{Task, TaskGoals, goals_of};
+use cylindroid::ik::{Budget, Criterion, Goal, IkOptions, Objective};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -66,6 +66,7 @@ pub(super) struct Search<'a, 'py> {
     pub(super) tasks: Option<Vec<Py<PyMotionTask>>>,
     pub(super) half_spaces: Option<Vec<Py<PyHalfSpace>>>,
     pub(super) posture: Option<Coordinates<'py>>,
+    pub(super) maximise: Option<&'a str>,
     pub(super) tolerance_position: f64,
     pub(super) tolerance_orientation: f64,
     pub(super) seed: u64,
@@ -73,8 +74,8 @@ pub(super) struct Search<'a, 'py> {
 }
 
 impl Search<'_, '_> {
-    /// The goals and the posture of the tasks.
-    fn goals(&self, mechanism: &PyMechanism) -> Result<(Vec<Goal>, Option<Vec<f64>>)> {
+    /// What the tasks ask for.
+    fn goals(&self, mechanism: &PyMechanism) -> Result<TaskGoals> {
         let tasks = self.tasks.as_deref().unwrap_or_default();
         Ok(goals_of(&tasks::motion_tasks(&mechanism.inner, tasks)?)?)
     }
@@ -82,16 +83,26 @@ impl Search<'_, '_> {
     pub(super) fn options(&self, mechanism: &PyMechanism) -> Result<IkOptions> {
         let posture =
             self.posture.as_ref().map(|q| q.vector(&mechanism.inner, "posture")).transpose()?;
-        let posture = match (posture, self.goals(mechanism)?.1) {
+        let of_tasks = self.goals(mechanism)?;
+        let posture = match (posture, of_tasks.posture) {
             (Some(_), Some(_)) => {
                 let reason = "there is a PostureTask as well; give one of them";
                 return Err(Failure::option("posture", "two postures", reason));
             }
             (own, other) => own.map(<[f64]>::to_vec).or(other),
         };
+        let criterion = match (self.maximise, of_tasks.criterion) {
+            (Some(name), Some(_)) => {
+                let reason = "there is a task for a criterion as well; give one of them";
+                return Err(Failure::option("maximise", name, reason));
+            }
+            (Some(name), None) => Some(self.criterion(mechanism, name)?),
+            (None, criterion) => criterion,
+        };
         let half_spaces = self.half_spaces.as_deref().unwrap_or_default();
         Ok(IkOptions {
             posture,
+            criterion,
             half_spaces: tasks::half_spaces(&mechanism.inner, half_spaces)?,
             position_tolerance: self.tolerance_position,
             orientation_tolerance: self.tolerance_orientation,
@@ -100,6 +111,16 @@ impl Search<'_, '_> {
             budget: Budget { iterations: self.iterations, time: None },
             ..IkOptions::default()
         })
+    }
+
+    /// The criterion of this name, of the frame and its components.
+    fn criterion(&self, mechanism: &PyMechanism, name: &str) -> Result<Criterion> {
+        let end_effector = mechanism.reference_or_tool(self.frame, self.tool.as_ref())?;
+        let task = self.task.as_ref().filter(|task| task.cast::<PyDict>().is_err());
+        let task: Option<String> = task.map(|task| entry("task", task)).transpose()?;
+        let axes = task.is_some().then_some(self.task_axes).flatten();
+        let components = options::task(&mechanism.inner, task.as_deref(), axes, Task::POSE)?;
+        Ok(Criterion::by_name(name, end_effector, components)?)
     }
 
     /// Of the target and the tasks.
@@ -112,7 +133,7 @@ impl Search<'_, '_> {
             Some(target) => self.frames(mechanism, target)?,
             None => self.no_frames()?,
         };
-        targets.goals.extend(self.goals(mechanism)?.0);
+        targets.goals.extend(self.goals(mechanism)?.goals);
         Ok(targets)
     }
 

@@ -25,6 +25,8 @@ use crate::table::{self, Table};
 /// out_of_reach : bool or ndarray of bool, (N,)
 ///     True if no solution exists: the target is farther from the first joint than the length of
 ///     the chain. Failure alone does not prove this.
+/// criterion : float or None, or list of them
+///     The value of what `maximise` or a task makes as large as possible; None without one.
 /// reason : str or None, or list of them
 ///     Of a miss: begins with "out of reach" (proven), "collision" (with the two bodies),
 ///     "half-space" (with their names: there is a solution outside), "limits" (with the joints: there
@@ -54,6 +56,9 @@ impl PySolution {
         }
         if let Some(reason) = s.reason.as_ref().filter(|_| s.out_of_reach.is_none()) {
             table.row("reason", reason.to_string());
+        }
+        if let Some(value) = s.criterion {
+            table.row("criterion", table::number(value));
         }
         let errors = format!("{:.1e} m, {:.1e} rad", s.position_error, s.orientation_error);
         table.row("errors", errors);
@@ -105,6 +110,16 @@ impl PySolution {
     #[getter]
     fn out_of_reach<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         arrays::each(py, &self.inner, |s| s.out_of_reach.is_some())
+    }
+
+    #[getter]
+    fn criterion<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match &self.inner {
+            Many::One(s) => s.criterion.into_bound_py_any(py),
+            Many::All(all) => {
+                all.iter().map(|s| s.criterion).collect::<Vec<_>>().into_bound_py_any(py)
+            }
+        }
     }
 
     #[getter]

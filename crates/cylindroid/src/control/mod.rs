@@ -39,6 +39,6 @@ pub use servo::{
 };
 pub use solver::{LimitKind, Saturation, VelocityBounds};
 pub use tasks::{
-    CollisionAvoidance, CustomTask, HalfSpace, MotionTask, StoppedBy, TaskMotionResult,
+    CollisionAvoidance, CustomTask, HalfSpace, MotionTask, StoppedBy, TaskGoals, TaskMotionResult,
     TaskObjective, TaskReport, TaskServo, TaskServoOptions, goals_of,
 };

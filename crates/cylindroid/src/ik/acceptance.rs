@@ -79,8 +79,8 @@ impl Solver {
         }
         let Some(errors) = errors else { return Ok(false) };
         if !solutions.iter().any(|other| self.is_same(&other.q, q)) {
-            let distance = self.distance(q);
-            solutions.push(Candidate { distance, q: q.to_vec(), errors, found_by });
+            let cost = self.cost(q);
+            solutions.push(Candidate { cost, q: q.to_vec(), errors, found_by });
         }
         Ok(true)
     }

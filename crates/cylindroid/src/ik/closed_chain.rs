@@ -110,6 +110,11 @@ fn the_frame(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Resu
     if !options.half_spaces.is_empty() {
         return refuse("half_spaces", "of a closed chain", "they count for serial arms only");
     }
+    if let Some(criterion) = &options.criterion {
+        let reason = "the self-motion of a closed chain is not followed; ask for the nearest of its \
+                      modes, or for all of them";
+        return refuse("criterion", criterion.name(), reason);
+    }
     let [Goal { objective: Objective::Frame { end_effector, components, target }, .. }] = *goals
     else {
         let reason = "inverse kinematics of a closed chain takes one frame with its target";
@@ -179,6 +184,7 @@ impl FrameGoal {
             iterations,
             restarts,
             out_of_reach: None,
+            criterion: None,
             reason: None,
         })
     }

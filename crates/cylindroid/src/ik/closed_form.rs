@@ -30,6 +30,17 @@ const QUARTIC: f64 = 2.5;
 /// Configurations at which the self-motion is evaluated.
 const LOOKS: usize = 8;
 
+/// Solutions that remain after the closed form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Remaining {
+    /// Further solutions may exist.
+    Possible,
+    /// The samples of the closed form miss none but short branches.
+    Unlikely,
+    /// None, up to tolerances: there is no solution, or all were found.
+    None,
+}
+
 /// The closed form for the goal of a solver.
 #[derive(Debug, Clone)]
 pub(super) struct ClosedForm {

@@ -34,7 +34,7 @@ pub(super) struct Problem {
     pub(super) half_spaces: HalfSpaceRows,
     /// For goals other than frames, and for half-spaces.
     pub(super) state: Option<State>,
-    length: f64,
+    pub(super) length: f64,
     /// The coordinates that move the goals: indices in `q`, ascending.
     pub(super) coordinates: Vec<usize>,
     /// Limits of these coordinates.
@@ -66,6 +66,7 @@ impl Problem {
             .iter()
             .flat_map(GoalRows::coordinates)
             .chain(options.half_spaces.iter().flat_map(of_half_space))
+            .chain(options.criterion.iter().flat_map(|c| c.coordinates(mechanism)))
             .collect();
         coordinates.sort_unstable();
         coordinates.dedup();

@@ -30,7 +30,7 @@ impl Solver {
         solutions: &mut Vec<Candidate>,
     ) -> Result<(Candidate, MissReason)> {
         let miss = |q: Vec<f64>, errors: Errors, reason: MissReason| {
-            (Candidate { distance: 0.0, q, errors, found_by: FoundBy::Numerical }, reason)
+            (Candidate { cost: 0.0, q, errors, found_by: FoundBy::Numerical }, reason)
         };
         let mut q = best.map_or_else(|| self.start.clone(), |(q, _)| q);
         let mut errors = self.problem.refine(&mut q, REFINEMENT_ITERATIONS);

@@ -10,6 +10,7 @@
 //! `solve`: the closed form (`closed_form`, `analytic`) first, then random restarts of a damped
 //! least-squares iteration (`levenberg_marquardt`), four at once if possible
 //! (`parallel_restarts`). The closest solution is that of `nearest` and `self_motion`;
+//! A [`Criterion`] takes the place of the distance (`criterion`, `ascent`).
 //! `acceptance` decides what a solution is, `avoidance` keeps it apart from other bodies, and
 //! `miss` finds the reason where there is none. Closed chains go their own way (`closed_chain`): by
 //! assembly with the platform at its target.
@@ -26,11 +27,13 @@
 
 mod acceptance;
 mod analytic;
+mod ascent;
 mod avoidance;
 mod branches;
 mod closed_chain;
 mod closed_form;
 mod convergence;
+mod criterion;
 mod goal;
 mod goal_rows;
 mod half_space_rows;
@@ -46,6 +49,7 @@ mod solve;
 
 pub use crate::task::{HalfSpace, Task};
 pub use analytic::{Analytic, AnalyticSolution, AnalyticSolutions, ArmGeometry, NotSolvable};
+pub use criterion::Criterion;
 pub use goal::{Goal, Objective};
 pub use options::{Budget, IkOptions};
 pub use reason::MissReason;

@@ -18,6 +18,7 @@ use super::branches::{Place, STEP, Sample, Samples, index_of};
 use super::closed_form::ClosedForm;
 use super::convergence::is_reached;
 use super::goal::{Goal, target_of};
+use super::self_motion::Aim;
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::error::Result;
@@ -30,10 +31,23 @@ const NEARLY_WITHIN: f64 = 0.3;
 const MAX_DESCENTS: usize = 40;
 
 impl Solver {
-    /// If the closest solution is requested: moves along the self-motion towards the initial guess.
+    /// If the closest solution or that of a criterion is requested: moves along the self-motion
+    /// towards it, unless no squared distance below `bound` is expected.
     pub(super) fn approach_preferred(&mut self, q: &mut [f64], bound: f64) {
-        if self.options.nearest {
-            self.descent.run(&mut self.problem, (q, &self.preferred), &self.options, bound);
+        let Self { descent, problem, options, preferred, ascent, .. } = self;
+        if let Some(ascent) = ascent {
+            ascent.wrap_angles(problem, q);
+            descent.run(problem, (q, Aim::Criterion(ascent)), options, f64::INFINITY);
+        } else if options.nearest {
+            descent.run(problem, (q, Aim::Closest(preferred)), options, bound);
+        }
+    }
+
+    /// What the best solution makes smallest at `q`: the distance, or the cost of the criterion.
+    pub(super) fn cost(&mut self, q: &[f64]) -> f64 {
+        match &mut self.ascent {
+            Some(ascent) => ascent.cost(&self.problem, q),
+            None => self.distance(q),
         }
     }
 

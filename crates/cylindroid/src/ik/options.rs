@@ -4,6 +4,7 @@
 
 use std::time::Duration;
 
+use super::criterion::Criterion;
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::task::HalfSpace;
@@ -35,6 +36,9 @@ pub struct IkOptions {
     /// A preferred configuration, all n coordinates: the solution closest to it instead of the one
     /// closest to the initial guess; implies `nearest`. Coordinates that move no goal are set to it.
     pub posture: Option<Vec<f64>>,
+    /// What the self-motion makes as large as possible, instead of approaching a configuration: the
+    /// best of the maxima to which the restarts lead. Trees only.
+    pub criterion: Option<Criterion>,
     /// Half-spaces of the world that tool points must not leave, to within the position tolerance.
     pub half_spaces: Vec<HalfSpace>,
     /// Seed of the random restarts: the same seed gives the same solution.
@@ -54,6 +58,7 @@ impl Default for IkOptions {
             fixed: Vec::new(),
             nearest: false,
             posture: None,
+            criterion: None,
             half_spaces: Vec::new(),
             seed: 0,
             budget: Budget { iterations: 20_000, time: None },
@@ -75,6 +80,17 @@ impl IkOptions {
         }
         if let Some(posture) = &self.posture {
             mechanism.check_q("posture", posture)?;
+        }
+        if let Some(criterion) = &self.criterion {
+            criterion.check(mechanism)?;
+            if self.nearest || self.posture.is_some() {
+                let other = if self.nearest { "nearest" } else { "posture" };
+                return Err(Error::InvalidOption {
+                    option: "criterion",
+                    value: criterion.name().to_owned(),
+                    reason: format!("'{other}' asks for another solution; give one of them"),
+                });
+            }
         }
         self.half_spaces.iter().try_for_each(|half_space| half_space.check(mechanism))?;
         if let Some(&place) = self.fixed.iter().find(|&&i| i >= mechanism.n()) {

@@ -1,17 +1,18 @@
-//! Descent along the self-motion of a redundant mechanism: from one solution to the closest one
-//! that is connected with it.
+//! Descent along the self-motion of a redundant mechanism: from one solution to the best one that
+//! is connected with it, the closest to a configuration or that of a criterion.
 //!
-//! Formula  d = (1 - A+ A) (start - q), joints clamped at a limit that d would leave;
+//! Formula  d = -(1 - A+ A) grad c, joints clamped at a limit that d would leave; c the cost, half
+//!          of the squared distance or that of `ascent.rs`;
 //!          q <- q + s d, then back to the goals by Levenberg-Marquardt steps;
 //!          s = |dq|^2 / <dq, dd> with the changes of q and -d in the last step
 //! Shapes   A: m x n by columns, d: n
-//! Valid    any tree; a local minimum of the distance to the initial guess. Every step decreases
-//!          the distance
+//! Valid    any tree; a local minimum of the cost. Every step decreases it
 //! Why so   with one redundant joint s is the step of the secant method: a handful of steps, where
 //!          a projected gradient takes thirty
 //! Source   Barzilai & Borwein 1988
-//! Checked  tests/it/ik.rs::the_nearest_answer, src/ik/nearest.rs
+//! Checked  tests/it/ik.rs::the_nearest_answer, src/ik/nearest.rs, tests/it/ik_criteria.rs
 
+use super::ascent::Ascent;
 use super::convergence::is_reached;
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
@@ -24,17 +25,48 @@ const STEPS: usize = 60;
 const DAMPING: f64 = 1e-9;
 /// First step length.
 const FIRST_SHARE: f64 = 0.5;
-/// Range of the step length, and the factor after a step that does not decrease the distance.
+/// Range of the step length, and the factor after a step that does not decrease the cost.
 const SHARES: (f64, f64) = (1e-3, 8.0);
 const SHORTER: f64 = 0.25;
 /// Largest change of a coordinate per step [rad, or lengths].
 const LONGEST: f64 = 0.6;
-/// The descent ends where |d|^2 is below this share of the squared distance.
+/// The descent ends where |d|^2 is below this share of the squared distance; of a criterion, of 1.
 const FLAT: f64 = 1e-9;
 /// A configuration is at the boundary of a half-space within this multiple of the tolerance [-].
 const BOUNDARY: f64 = 10.0;
 /// Levenberg-Marquardt steps per step along the self-motion.
 const CORRECTIONS: usize = 8;
+
+/// What a descent makes smaller.
+#[derive(Debug)]
+pub(super) enum Aim<'a> {
+    /// The distance from a configuration.
+    Closest(&'a [f64]),
+    /// The cost of a criterion.
+    Criterion(&'a mut Ascent),
+}
+
+impl Aim<'_> {
+    /// Twice the cost at `q`: the squared distance.
+    fn twice_cost(&mut self, problem: &Problem, q: &[f64]) -> f64 {
+        match self {
+            Self::Closest(start) => problem.squared_distance(q, start),
+            Self::Criterion(ascent) => 2.0 * ascent.cost(problem, q),
+        }
+    }
+
+    /// Minus the gradient of the cost at `q`, over the coordinates of the problem.
+    fn descent_into(&mut self, problem: &Problem, q: &[f64], out: &mut [f64]) {
+        match self {
+            Self::Closest(start) => {
+                for (out, &c) in out.iter_mut().zip(&problem.coordinates) {
+                    *out = start[c] - q[c];
+                }
+            }
+            Self::Criterion(ascent) => ascent.gradient(problem, q, out),
+        }
+    }
+}
 
 /// Workspace of the descent.
 #[derive(Debug, Clone)]
@@ -63,27 +95,26 @@ impl Descent {
         }
     }
 
-    /// Moves the solution `q` along the solutions towards `start`, as close as possible; gives up
-    /// as soon as a squared distance below `bound` is not expected.
+    /// Moves the solution `q` along the solutions to a minimum of the cost; gives up as soon as a
+    /// twofold cost below `bound` is not expected.
     pub(super) fn run(
         &mut self,
         problem: &mut Problem,
-        (q, start): (&mut [f64], &[f64]),
+        (q, mut aim): (&mut [f64], Aim<'_>),
         options: &IkOptions,
         bound: f64,
     ) {
-        let mut far = problem.squared_distance(q, start);
+        let mut far = aim.twice_cost(problem, q);
         let mut share = FIRST_SHARE;
         problem.evaluate(q);
         for step in 0..STEPS {
-            for (desired, &c) in self.desired.iter_mut().zip(&problem.coordinates) {
-                *desired = start[c] - q[c];
-            }
+            aim.descent_into(problem, q, &mut self.desired);
             if !self.project(problem, q, options) {
                 return;
             }
             let slope = dot(&problem.d, &problem.d);
-            if slope <= FLAT * far {
+            let scale = if matches!(aim, Aim::Closest(_)) { far } else { 1.0 };
+            if slope <= FLAT * scale {
                 return;
             }
             if step > 0 {
@@ -104,7 +135,7 @@ impl Descent {
                 self.next.copy_from_slice(q);
                 problem.advance(&mut self.next);
                 let (errors, _) = problem.run(&mut self.next, options, CORRECTIONS);
-                let then = problem.squared_distance(&self.next, start);
+                let then = aim.twice_cost(problem, &self.next);
                 if is_reached(errors, options) && then < far {
                     far = then;
                     break;

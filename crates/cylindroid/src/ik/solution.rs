@@ -46,14 +46,16 @@ pub struct Solution {
     /// Proof that no solution exists: the distance of the target from the first joint, and the
     /// length of the chain from there (m).
     pub out_of_reach: Option<(f64, f64)>,
+    /// The value of [`IkOptions::criterion`](super::IkOptions::criterion) at `q`; `None` without one.
+    pub criterion: Option<f64>,
     /// The reason why no solution was found; `None` with success.
     pub reason: Option<MissReason>,
 }
 
-/// A solution, with its distance from the initial guess.
+/// A solution, with its distance from the initial guess or the cost of the criterion.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
-    pub(super) distance: f64,
+    pub(super) cost: f64,
     pub(super) q: Vec<f64>,
     pub(super) errors: Errors,
     pub(super) found_by: FoundBy,

@@ -17,9 +17,10 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use super::analytic::Analytic;
+use super::ascent::Ascent;
 use super::avoidance::Avoidance;
 use super::closed_chain::solve_closed;
-use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES};
+use super::closed_form::{ClosedForm, REDUNDANCY_SAMPLES, Remaining};
 use super::convergence::{Errors, is_reached};
 use super::goal::{Goal, check_all, target_of};
 use super::levenberg_marquardt::Problem;
@@ -74,18 +75,8 @@ pub struct Solver {
     /// The configuration from which distances are measured: the initial guess, or the posture.
     pub(super) preferred: Vec<f64>,
     pub(super) descent: Descent,
+    pub(super) ascent: Option<Ascent>,
     pub(super) avoidance: Option<Avoidance>,
-}
-
-/// Solutions that remain after the closed form.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Remaining {
-    /// Further solutions may exist.
-    Possible,
-    /// The samples of the closed form miss none but short branches.
-    Unlikely,
-    /// None, up to tolerances: there is no solution, or all were found.
-    None,
 }
 
 /// A configuration that reaches all `goals`.
@@ -104,7 +95,8 @@ enum Remaining {
 ///
 /// # Errors
 /// No goals, frames of another mechanism, non-finite values; for a mechanism with loops several
-/// goals or one that is no frame, half-spaces, an orientation of which one component is given.
+/// goals or one that is no frame, half-spaces, a criterion, an orientation of which one component
+/// is given.
 #[doc(alias = "random restart")]
 pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Result<Solution> {
     if mechanism.is_closed() {
@@ -156,6 +148,7 @@ impl Solver {
         let start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
         let formulas = ClosedForm::of(mechanism, goals, options);
         let descent = Descent::new(&problem);
+        let ascent = options.criterion.map(|c| Ascent::new(mechanism, c, problem.length));
         let nearest = options.nearest || options.posture.is_some();
         let mut solver = Self {
             problem,
@@ -164,6 +157,7 @@ impl Solver {
             preferred: start.clone(),
             start,
             descent,
+            ascent,
             avoidance: None,
         };
         solver.load_start();
@@ -215,23 +209,24 @@ impl Solver {
     }
 
     /// A configuration that reaches `goals`, with the same end effectors and tasks as those of
-    /// [`Solver::new`]: the closest one if [`IkOptions::nearest`], otherwise the first one found.
+    /// [`Solver::new`]: the closest one if [`IkOptions::nearest`], the best one found if there is a
+    /// [`IkOptions::criterion`], otherwise the first one found.
     ///
     /// # Errors
     /// Goals of another number, end effector or task; non-finite values.
     pub fn solve(&mut self, goals: &[Goal]) -> Result<Solution> {
-        if self.options.nearest {
-            let mut found = self.search(goals, MAX_RESTARTS_AFTER_FIRST, |solutions| {
-                solutions >= MAX_RESTARTS_AFTER_FIRST
-            })?;
-            return Ok(found.swap_remove(0));
-        }
-        let mut found = self.search(goals, usize::MAX, |solutions| solutions >= 1)?;
+        let is_compared = self.options.nearest || self.ascent.is_some();
+        let (after_first, most) = if is_compared {
+            (MAX_RESTARTS_AFTER_FIRST, MAX_RESTARTS_AFTER_FIRST)
+        } else {
+            (usize::MAX, 1)
+        };
+        let mut found = self.search(goals, after_first, |solutions| solutions >= most)?;
         Ok(found.swap_remove(0))
     }
 
-    /// Up to `count` distinct solutions, the closest to the initial guess first: see
-    /// [`solve_distinct`].
+    /// Up to `count` distinct solutions, the closest to the initial guess first, or the best by the
+    /// criterion: see [`solve_distinct`].
     ///
     /// ```
     /// use cylindroid::ik::{Goal, IkOptions, Solver};
@@ -247,13 +242,16 @@ impl Solver {
     /// # Errors
     /// As [`Solver::solve`].
     pub fn solve_distinct(&mut self, goals: &[Goal], count: usize) -> Result<Vec<Solution>> {
-        let mut found = self.search(goals, usize::MAX, |solutions| solutions >= count)?;
+        let mut found = match self.ascent {
+            Some(_) => self.search(goals, MAX_RESTARTS_AFTER_FIRST, |_| false)?,
+            None => self.search(goals, usize::MAX, |solutions| solutions >= count)?,
+        };
         found.retain(|s| s.success);
         found.truncate(count);
         Ok(found)
     }
 
-    /// Solutions, the closest to the initial guess first, or one failure.
+    /// Solutions, the one of least cost first, or one failure.
     pub(super) fn search(
         &mut self,
         goals: &[Goal],
@@ -288,7 +286,7 @@ impl Solver {
             let mut tell = |solver: &mut Self, q: &mut [f64], errors: Errors| -> Result<()> {
                 if is_reached(errors, &solver.options) {
                     solver.wrap_angles(q);
-                    let distances = solutions.iter().map(|s| s.distance);
+                    let distances = solutions.iter().map(|s| s.cost);
                     let best = distances.fold(f64::INFINITY, f64::min);
                     solver.approach_preferred(q, if nearest { best * best } else { f64::INFINITY });
                     solver.add(&mut solutions, q, FoundBy::Numerical)?;
@@ -351,8 +349,9 @@ impl Solver {
                 break;
             }
         }
-        let solution = |success: bool, answer: Candidate| Solution {
+        let solution = |solver: &mut Self, success: bool, answer: Candidate| Solution {
             success,
+            criterion: solver.ascent.as_mut().map(|a| a.value(&solver.problem, &answer.q)),
             q: answer.q,
             position_error: answer.errors.position,
             orientation_error: answer.errors.orientation,
@@ -366,11 +365,11 @@ impl Solver {
         if solutions.is_empty() {
             let (miss, reason) = self.closest_miss(best, out_of_reach, &mut solutions)?;
             if solutions.is_empty() {
-                return Ok(vec![Solution { reason: Some(reason), ..solution(false, miss) }]);
+                return Ok(vec![Solution { reason: Some(reason), ..solution(self, false, miss) }]);
             }
         }
-        solutions.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        Ok(solutions.into_iter().map(|answer| solution(true, answer)).collect())
+        solutions.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        Ok(solutions.into_iter().map(|answer| solution(self, true, answer)).collect())
     }
 
     /// Adds the closed-form solutions; returns what remains and the number of evaluations.
@@ -395,8 +394,8 @@ impl Solver {
         let (mut left, mut calls) = (Remaining::Possible, 0);
         let most = match formulas.are_all() {
             true => 1,
-            // Every solution moves to the closest one nearby: samples would lead to the same.
-            false if self.options.nearest => 0,
+            // Every solution moves to the best one nearby: samples would lead to the same.
+            false if self.options.nearest || self.ascent.is_some() => 0,
             false => REDUNDANCY_SAMPLES.min(self.options.budget.iterations - 1),
         };
         let mut start = self.start.clone();
@@ -425,7 +424,7 @@ impl Solver {
                 for (c, angle) in places.into_iter().zip(candidate.q) {
                     q[c] = angle;
                 }
-                if candidate.free != [false; 6] {
+                if candidate.free != [false; 6] || self.ascent.is_some() {
                     self.approach_preferred(&mut q, f64::INFINITY);
                 }
                 self.add(solutions, &mut q, FoundBy::Analytic)?;

@@ -1,8 +1,8 @@
 //! Goals of inverse kinematics beside frames: relative frames, the centre of mass, gaze; postures.
 
-use cylindroid::control::{MotionTask, TaskObjective, goals_of};
+use cylindroid::control::{MotionTask, TaskGoals, TaskObjective, goals_of};
 use cylindroid::ik::{
-    Goal, HalfSpace, IkOptions, MissReason, Objective, Solution, Solver, Task, solve,
+    Criterion, Goal, HalfSpace, IkOptions, MissReason, Objective, Solution, Solver, Task, solve,
 };
 use cylindroid::kinematics::{MassMatrix, State};
 use cylindroid::model::{Inclusion, Mechanism};
@@ -296,15 +296,30 @@ fn tasks_are_goals() {
         })
         .collect();
     let expected: Vec<Goal> = goals.iter().map(|goal| goal.with_weight(2.0)).collect();
-    assert_eq!(goals_of(&tasks).unwrap(), (expected.clone(), None));
+    let own = TaskGoals { goals: expected, ..TaskGoals::default() };
+    assert_eq!(goals_of(&tasks).unwrap(), own);
     let posture = MotionTask::new("posture", TaskObjective::Posture { q: vec![0.1; robot.n()] });
     tasks.push(posture.clone());
-    assert_eq!(goals_of(&tasks).unwrap(), (expected, Some(vec![0.1; robot.n()])));
+    let with_posture = TaskGoals { posture: Some(vec![0.1; robot.n()]), ..own };
+    assert_eq!(goals_of(&tasks).unwrap(), with_posture);
     tasks.push(posture);
     assert!(goals_of(&tasks).unwrap_err().to_string().contains("one posture"));
     let still = TaskObjective::JointVelocities { velocities: vec![0.0; robot.n()] };
     let error = goals_of(&[MotionTask::new("still", still)]).unwrap_err().to_string();
     assert!(error.contains("still") && error.contains("gaze"), "{error}");
+    let margin = TaskObjective::LimitAvoidance { margin: 0.2 };
+    let components = Task::POSE;
+    let end_effector = robot.tool().into();
+    let climb = TaskObjective::Manipulability { end_effector, components };
+    for (objective, criterion) in [
+        (margin, Criterion::LimitAvoidance { margin: 0.2 }),
+        (climb, Criterion::Manipulability { end_effector, components }),
+    ] {
+        let mut tasks = vec![MotionTask::new("best", objective)];
+        assert_eq!(goals_of(&tasks).unwrap().criterion, Some(criterion));
+        tasks.push(tasks[0].clone());
+        assert!(goals_of(&tasks).unwrap_err().to_string().contains("one criterion"));
+    }
 }
 
 /// On a turned foundation, and with the goals in another order, the same joint positions are found.

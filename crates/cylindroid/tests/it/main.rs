@@ -14,6 +14,7 @@ mod fixed_joints;
 mod graph;
 mod hyperbolic;
 mod ik;
+mod ik_criteria;
 mod ik_goals;
 mod ik_half_spaces;
 mod ik_misses;

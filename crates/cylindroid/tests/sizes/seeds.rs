@@ -377,6 +377,9 @@ fn control(world: &mut World) {
     all(world, &[IkOptions { budget, ..IkOptions::default() }]);
     let one = Budget { iterations: 1, time: None };
     all(world, &[IkOptions { budget: one, ..IkOptions::default() }]);
+    let away = ik::Criterion::LimitAvoidance { margin: 0.5 };
+    all(world, &[IkOptions { criterion: Some(away), ..IkOptions::default() }]);
+    all(world, &[away]);
     all(world, &[ik::MissReason::NotProven, ik::MissReason::Limits { joints: vec![] }]);
     all(world, &[ik::FoundBy::Numerical]);
 }

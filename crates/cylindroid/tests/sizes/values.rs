@@ -207,6 +207,7 @@ values! {
     ik::FoundBy,
     ik::Goal,
     ik::IkOptions,
+    ik::Criterion,
     ik::MissReason,
     ik::NotSolvable,
     ik::Objective,

@@ -1,7 +1,7 @@
 //! The goals of `ik`: the target of the arguments, tasks of frames, and those of a file.
 
 use cylindroid::control::{MotionTask, TaskObjective, goals_of};
-use cylindroid::ik::{Goal, HalfSpace, Objective, Task};
+use cylindroid::ik::{Criterion, Goal, HalfSpace, Objective, Task};
 use cylindroid::model::Mechanism;
 use cylindroid::{EndEffector, Pose};
 use serde::Serialize;
@@ -19,6 +19,7 @@ pub(super) struct Goals {
     pub(super) description: String,
     pub(super) half_spaces: Vec<HalfSpace>,
     pub(super) posture: Option<Vec<f64>>,
+    pub(super) criterion: Option<Criterion>,
 }
 
 /// A goal in reports.
@@ -154,19 +155,37 @@ pub(super) fn goals(args: &IkArgs, robot: &Mechanism, start: &[f64]) -> anyhow::
             *part = format!("{}: {part}", robot.frame_of(end_effector.frame).name);
         }
     }
-    let (mut half_spaces, mut posture) = (Vec::new(), None);
+    let (mut half_spaces, mut posture, mut of_file) = (Vec::new(), None, None);
     if let Some(path) = &args.tasks {
         let usual = MotionTask::new("", TaskObjective::Posture { q: Vec::new() });
         let (tasks, walls) = move_to::load_tasks(path, &robot.state(start)?, &usual)?;
-        let (own, preferred) = goals_of(&tasks)?;
-        parts.extend(own.iter().map(|goal| words(goal, robot)));
-        all.extend(own);
-        (half_spaces, posture) = (walls, preferred);
+        let own = goals_of(&tasks)?;
+        parts.extend(own.goals.iter().map(|goal| words(goal, robot)));
+        all.extend(own.goals);
+        (half_spaces, posture, of_file) = (walls, own.posture, own.criterion);
     }
     if all.is_empty() {
         anyhow::bail!("--tasks: there is neither a frame nor another goal in the file");
     }
-    Ok(Goals { all, description: parts.join("; "), half_spaces, posture })
+    let criterion = match args.maximise.as_deref() {
+        Some(_) if posture.is_some() || of_file.is_some() => {
+            let other = if posture.is_some() { "posture" } else { "criterion" };
+            anyhow::bail!("--maximise: the file of tasks has a {other}; give one of them")
+        }
+        Some(name) => Some(criterion(name, &all, robot)?),
+        None => of_file,
+    };
+    Ok(Goals { all, description: parts.join("; "), half_spaces, posture, criterion })
+}
+
+/// The criterion of this name, of the first goal that is a frame; without one of the tool's pose.
+fn criterion(name: &str, goals: &[Goal], robot: &Mechanism) -> cylindroid::Result<Criterion> {
+    let frames = goals.iter().find_map(|goal| match goal.objective {
+        Objective::Frame { end_effector, components, .. } => Some((end_effector, components)),
+        _ => None,
+    });
+    let (end_effector, components) = frames.unwrap_or((robot.tool().into(), Task::POSE));
+    Criterion::by_name(name, end_effector, components)
 }
 
 /// The frame, tool point and target of the first goal, if it is a frame.

@@ -5,11 +5,21 @@
 use super::objective::TaskObjective;
 use super::options::MotionTask;
 use crate::error::{Error, Result};
-use crate::ik::{Goal, Objective};
+use crate::ik::{Criterion, Goal, Objective};
 
-/// The goals of these tasks, with their weights, and the configuration of a posture among them:
-/// for [`IkOptions::posture`](crate::ik::IkOptions::posture). A solution reaches all goals: gains,
-/// levels, tolerances and velocities of the tasks do not count.
+/// What inverse kinematics makes of the tasks of a servo.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TaskGoals {
+    /// The goals, with their weights.
+    pub goals: Vec<Goal>,
+    /// The configuration of a posture: for [`IkOptions::posture`](crate::ik::IkOptions::posture).
+    pub posture: Option<Vec<f64>>,
+    /// That of a gradient: for [`IkOptions::criterion`](crate::ik::IkOptions::criterion).
+    pub criterion: Option<Criterion>,
+}
+
+/// The goals of these tasks, and the posture or the criterion among them. A solution reaches all
+/// goals: gains, levels, tolerances and velocities of the tasks do not count.
 ///
 /// ```
 /// use cylindroid::control::{MotionTask, TaskObjective, goals_of};
@@ -20,20 +30,20 @@ use crate::ik::{Goal, Objective};
 /// let gaze = TaskObjective::Gaze { end_effector: panda.tool().into(), point: Vec3::X };
 /// let posture = TaskObjective::Posture { q: panda.home().to_vec() };
 /// let tasks = [MotionTask::new("gaze", gaze), MotionTask::new("posture", posture)];
-/// let (goals, posture) = goals_of(&tasks)?;
-/// let options = IkOptions { posture, ..IkOptions::default() };
-/// assert!(solve(&panda, &goals, &options)?.success);
+/// let own = goals_of(&tasks)?;
+/// let options = IkOptions { posture: own.posture, ..IkOptions::default() };
+/// assert!(solve(&panda, &own.goals, &options)?.success);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
 /// # Errors
-/// A task that is neither a goal nor a posture, named; several postures.
-pub fn goals_of(tasks: &[MotionTask]) -> Result<(Vec<Goal>, Option<Vec<f64>>)> {
+/// A task that is neither a goal nor a posture nor a criterion, named; several postures or criteria.
+pub fn goals_of(tasks: &[MotionTask]) -> Result<TaskGoals> {
     let refuse = |task: &MotionTask, reason: &str| {
         let reason = reason.to_owned();
         Err(Error::InvalidOption { option: "tasks", value: task.name.clone(), reason })
     };
-    let (mut goals, mut posture) = (Vec::new(), None);
+    let (mut all, mut criteria) = (TaskGoals::default(), Vec::new());
     for task in tasks {
         let objective = match &task.objective {
             TaskObjective::Frame { end_effector, components, target } => Objective::Frame {
@@ -56,23 +66,33 @@ pub fn goals_of(tasks: &[MotionTask]) -> Result<(Vec<Goal>, Option<Vec<f64>>)> {
                 Objective::Gaze { end_effector: *end_effector, point: *point }
             }
             TaskObjective::Posture { q } => {
-                if posture.replace(q.clone()).is_some() {
+                if all.posture.replace(q.clone()).is_some() {
                     return refuse(task, "inverse kinematics takes one posture");
                 }
                 continue;
             }
-            TaskObjective::JointVelocities { .. }
-            | TaskObjective::Manipulability { .. }
-            | TaskObjective::LimitAvoidance { .. }
-            | TaskObjective::Custom(_) => {
+            TaskObjective::Manipulability { end_effector, components } => {
+                let (end_effector, components) = (*end_effector, *components);
+                criteria.push((task, Criterion::Manipulability { end_effector, components }));
+                continue;
+            }
+            TaskObjective::LimitAvoidance { margin } => {
+                criteria.push((task, Criterion::LimitAvoidance { margin: *margin }));
+                continue;
+            }
+            TaskObjective::JointVelocities { .. } | TaskObjective::Custom(_) => {
                 return refuse(
                     task,
-                    "inverse kinematics takes frames, relative frames, the centre of mass, gaze \
-                     and a posture",
+                    "inverse kinematics takes frames, relative frames, the centre of mass, gaze, \
+                     a posture, manipulability and limit avoidance",
                 );
             }
         };
-        goals.push(Goal::from(objective).with_weight(task.weight));
+        all.goals.push(Goal::from(objective).with_weight(task.weight));
     }
-    Ok((goals, posture))
+    if let Some((task, _)) = criteria.get(1) {
+        return refuse(task, "inverse kinematics takes one criterion");
+    }
+    all.criterion = criteria.first().map(|(_, criterion)| *criterion);
+    Ok(all)
 }

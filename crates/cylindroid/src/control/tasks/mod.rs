@@ -20,7 +20,7 @@ mod stack;
 mod task_servo;
 
 pub use crate::task::HalfSpace;
-pub use goals::goals_of;
+pub use goals::{TaskGoals, goals_of};
 pub use objective::{CustomTask, TaskObjective};
 pub use options::{CollisionAvoidance, MotionTask, StoppedBy, TaskReport, TaskServoOptions};
 pub use simulation::TaskMotionResult;

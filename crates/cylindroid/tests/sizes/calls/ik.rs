@@ -12,6 +12,8 @@ calls! {
     ik::Analytic::with_full_turns;
     ik::Analytic::with_locked = |m: &'static Mechanism, of: EndEffector, locked: &'static [usize]| { owned(m, of).then(|| Analytic::with_locked(m, of, locked).ok()).flatten() };
     ik::AnalyticSolutions::is_open;
+    ik::Criterion::by_name = |name: &'static str, of: EndEffector, task: Task| ik::Criterion::by_name(name, of, task);
+    ik::Criterion::name;
     ik::FoundBy::name;
     ik::Goal::center_of_mass;
     ik::Goal::frame = |of: EndEffector, task: Task, target: Pose| ik::Goal::frame(of, task, target);
