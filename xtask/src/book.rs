@@ -40,7 +40,7 @@ pub(crate) fn build() -> Result<()> {
 /// Writes what commands and Python print into the pages.
 fn outputs() -> Result<()> {
     let robots = models::fetch()?;
-    let arguments = ["test", "--quiet", "--package", "cylindroid-cli", "--test", "cli", "book::"];
+    let arguments = ["test", "--quiet", "--workspace", "--test", "cli", "book::"];
     let mut test = cargo(&arguments);
     run(test.env("CYLINDROID_TEST_ROBOTS", robots).env("CYLINDROID_WRITE_BOOK", "1"))?;
     python::write_outputs()

@@ -103,7 +103,8 @@ fn in_all_forms(robots: &Path, chosen: &[&str]) -> Result<()> {
     }
     for form in forms {
         println!("CYLINDROID_SIMD={form}");
-        let tests = ["test", "--quiet", "--package", "cylindroid", "--test", "it", "--"];
+        // Of the workspace: of one package cargo would build the dependencies with other features.
+        let tests = ["test", "--quiet", "--workspace", "--test", "it", "--"];
         run(cargo(&[&tests[..], chosen].concat())
             .env("CYLINDROID_TEST_ROBOTS", robots)
             .env("CYLINDROID_SIMD", form))?;

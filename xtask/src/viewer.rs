@@ -116,7 +116,8 @@ pub(crate) fn follow(python: &Path) -> Result<()> {
 fn in_browser(arguments: &[PathBuf], python: Option<&Path>) -> Result<()> {
     let chromium = chromium()?;
     let robots = models::fetch()?;
-    run(&mut cargo(&["build", "--quiet", "--package", "cylindroid-cli"]))?;
+    // The command line that its tests run: another profile would compile everything again.
+    run(&mut cargo(&["test", "--quiet", "--workspace", "--test", "cli", "--no-run"]))?;
     let target =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     let binary = target.join("debug").join(format!("cylindroid{}", std::env::consts::EXE_SUFFIX));
