@@ -25,7 +25,9 @@ export const PATIENCE = Number(process.env["CYLINDROID_PATIENCE"] ?? 60_000);
  * @param {string[]} args
  */
 export async function serve(...args) {
-  const child = spawn(BINARY, ["view", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+  // A port of its own: what the browser keeps of an address is that of this server.
+  const port = args.includes("--port") ? [] : ["--port", "0"];
+  const child = spawn(BINARY, ["view", ...port, ...args], { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
   child.stderr.on("data", (data) => (said += data));
   const url = await new Promise((resolve, reject) => {

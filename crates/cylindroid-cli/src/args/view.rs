@@ -42,9 +42,18 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "JOINTS", value_delimiter = ',')]
     pub(crate) actuated: Vec<String>,
 
-    /// Port; 0 selects a free one
-    #[arg(long, value_name = "PORT", default_value_t = 0)]
-    pub(crate) port: u16,
+    /// Port; 0 selects a free one. By default 7411, and a free one where that is taken
+    #[arg(long, value_name = "PORT")]
+    pub(crate) port: Option<u16>,
+
+    /// Open the page in the browser of this machine
+    #[arg(long)]
+    pub(crate) open: bool,
+
+    /// Serve nothing but what is below a random path, which the printed URL contains: on a machine
+    /// that others use
+    #[arg(long)]
+    pub(crate) token: bool,
 
     /// Address or host name to listen on; any other than 127.0.0.1 and ::1 allows access from other
     /// machines
@@ -64,6 +73,6 @@ pub(crate) struct ViewArgs {
     pub(crate) obstacle: Vec<ObstacleArg>,
 
     /// Start, print the URL and exit
-    #[arg(long)]
+    #[arg(long, conflicts_with = "open")]
     pub(crate) check: bool,
 }

@@ -1,7 +1,8 @@
 //! `view`: serves the web viewer.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::Context;
 use cylindroid::Result;
@@ -13,6 +14,9 @@ use crate::commands::shared::{
     Style, all_actuated, configuration, end_effector, limited, load, within_limits,
 };
 use crate::viewer::{Server, Start, StartBodies, check_count, page_is_built};
+
+/// The usual port: an address that can be kept, with what the browser remembers of it.
+const PORT: u16 = 7411;
 
 #[derive(Debug, Serialize)]
 struct ViewJson<'a> {
@@ -27,13 +31,7 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
     let model = start.mechanism.name().to_owned();
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
-        let server = Server::bind(start, &args.host, args.port).await;
-        let server = server.with_context(|| {
-            format!(
-                "cannot listen at {} port {}; choose others with --host and --port",
-                args.host, args.port
-            )
-        })?;
+        let server = listening(start, args).await?;
         let (url, page) = (server.url(), page_is_built());
         match style {
             Style::Table => writeln!(out, "{url}")?,
@@ -45,6 +43,11 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
         out.flush()?;
         if !page {
             note(NOT_BUILT);
+        }
+        if args.open
+            && let Err(error) = opener::open_browser(&url)
+        {
+            note(&format!("no browser opens the page ({error}); open {url} yourself"));
         }
         if let Some(url) = server.url_for_others() {
             note(&format!(
@@ -60,6 +63,29 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
     // Unfinished reports are discarded.
     runtime.shutdown_background();
     Ok(ExitCode::SUCCESS)
+}
+
+/// At the port of `--port`; without it at the usual one, or at a free one where that is taken.
+async fn listening(start: Start, args: &ViewArgs) -> anyhow::Result<Server> {
+    let token = if args.token { random_token()? } else { String::new() };
+    let start = Arc::new(start);
+    let bind = |port| Server::bind(Arc::clone(&start), &args.host, port, &token);
+    let port = args.port.unwrap_or(PORT);
+    let server = match bind(port).await {
+        Err(error) if error.kind() == ErrorKind::AddrInUse && args.port.is_none() => bind(0).await,
+        other => other,
+    };
+    server.with_context(|| {
+        let host = &args.host;
+        format!("cannot listen at {host} port {port}; choose others with --host and --port")
+    })
+}
+
+/// A path that cannot be guessed: 128 random bits in hexadecimal.
+fn random_token() -> anyhow::Result<String> {
+    let mut bits = [0; 16];
+    getrandom::fill(&mut bits).map_err(|error| anyhow::anyhow!("--token: {error}"))?;
+    Ok(bits.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
 const NOT_BUILT: &str = "the page is not built, only the protocol is served; run `cargo xtask \

@@ -70,9 +70,14 @@ pub(super) struct Place<'a> {
 }
 
 impl Server {
-    /// Listens at this host and port (0: any that is free).
-    pub(crate) async fn bind(start: Start, host: &str, port: u16) -> io::Result<Self> {
-        Self::of(Arc::new(start), None, Place { host, port, ..Place::default() }).await
+    /// Listens at this host and port (0: any that is free), for those who know the token.
+    pub(crate) async fn bind(
+        start: Arc<Start>,
+        host: &str,
+        port: u16,
+        token: &str,
+    ) -> io::Result<Self> {
+        Self::of(start, None, Place { host, port, token, ..Place::default() }).await
     }
 
     /// Listens, for the session of a program if there is one.
@@ -92,16 +97,19 @@ impl Server {
 
     /// The URL of the page.
     pub(crate) fn url(&self) -> String {
-        let folder = &*self.shared.folder;
-        match folder.strip_prefix('/') {
-            None => self.names.url(),
-            Some(token) => format!("{}{token}/", self.names.url()),
+        self.with_token(self.names.url())
+    }
+
+    fn with_token(&self, url: String) -> String {
+        match self.shared.folder.strip_prefix('/') {
+            None => url,
+            Some(token) => format!("{url}{token}/"),
         }
     }
 
     /// The URL for other machines, if the server listens to them.
     pub(crate) fn url_for_others(&self) -> Option<String> {
-        self.names.url_for_others()
+        self.names.url_for_others().map(|url| self.with_token(url))
     }
 
     /// Serves until ctrl-c.

@@ -14,6 +14,7 @@ mod shared;
 
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -28,21 +29,38 @@ const WAIT: Duration = Duration::from_secs(60);
 pub(crate) struct Server {
     child: Child,
     port: u16,
+    /// Of the URL; empty without `--token`.
+    token: String,
 }
 
 impl Server {
+    /// At a free port.
     pub(crate) fn new(arguments: &[&str]) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_cylindroid"))
-            .arg("view")
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        Self::of(
+            Command::new(env!("CARGO_BIN_EXE_cylindroid")).args(["view", "--port", "0"]),
+            arguments,
+        )
+    }
+
+    fn new_at_usual_port(arguments: &[&str]) -> Self {
+        Self::of(Command::new(env!("CARGO_BIN_EXE_cylindroid")).arg("view"), arguments)
+    }
+
+    /// In an environment with this browser.
+    fn with_browser(arguments: &[&str], browser: &Path) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_cylindroid"));
+        Self::of(command.args(["view", "--port", "0"]).env("BROWSER", browser), arguments)
+    }
+
+    fn of(command: &mut Command, arguments: &[&str]) -> Self {
+        let mut child =
+            command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let mut line = String::new();
         BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
-        let port = line.trim().trim_end_matches('/').rsplit(':').next().unwrap().parse();
-        Self { child, port: port.unwrap_or_else(|_| panic!("no URL: {line:?}")) }
+        let rest = line.trim().trim_end_matches('/').rsplit(':').next().unwrap();
+        let (port, token) = rest.split_once('/').unwrap_or((rest, ""));
+        let port = port.parse().unwrap_or_else(|_| panic!("no URL: {line:?}"));
+        Self { child, port, token: token.to_owned() }
     }
 
     fn address(&self) -> String {

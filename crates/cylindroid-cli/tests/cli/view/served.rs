@@ -18,11 +18,53 @@ fn it_prints_one_line_and_can_stop_there() {
     let server = Server::new(&["panda"]);
     let port = server.port.to_string();
     assert!(refused(&["view", "panda", "--port", &port]).contains("--port"));
+    assert!(refused(&["view", "panda", "--open", "--check"]).contains("--open"));
     assert!(refused(&["view", "pnda"]).contains("panda"));
     assert!(refused(&["view", "panda", "--actuated", "panda_joint1"]).contains("no loops"));
     assert!(refused(&["view", "panda", "--q", "0,0,0,9,0,0,0"]).contains("limits"));
     assert!(refused(&["view", "panda", "--meshes", "no such folder"]).contains("no such folder"));
     assert_eq!(cylindroid(&["view", "panda", "--port", "70000"]).status.code(), Some(2));
+}
+
+/// The port is the usual one for the first, and a free one for the next.
+#[test]
+fn the_usual_port_or_a_free_one() {
+    let servers = [(); 2].map(|()| Server::new_at_usual_port(&["five-bar"]));
+    assert_ne!(servers[0].port, servers[1].port);
+    for server in &servers {
+        assert_eq!(server.get("/").0, 200);
+    }
+}
+
+/// Nothing is served outside of the path that only the printed URL contains.
+#[test]
+fn a_token_hides_the_server() {
+    let urls = [(); 2].map(|()| text(&["view", "five-bar", "--check", "--token", "--port", "0"]));
+    let tokens = urls.each_ref().map(|url| url.trim().split('/').nth(3).unwrap().to_owned());
+    assert!(tokens.iter().all(|token| token.len() == 32) && tokens[0] != tokens[1], "{tokens:?}");
+    let server = Server::new(&["five-bar", "--token"]);
+    assert_eq!(server.get("/").0, 404);
+    let path = format!("/{}/", server.token);
+    assert_eq!(server.get(&path).0, 200);
+}
+
+/// `--open` runs the browser of the environment on the URL.
+#[cfg(target_os = "linux")]
+#[test]
+fn it_opens_the_browser() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = tempfile::tempdir().unwrap();
+    let (browser, seen) = (folder.path().join("browser"), folder.path().join("seen"));
+    fs::write(&browser, format!("#!/bin/sh\nprintf %s \"$1\" > {}\n", seen.display())).unwrap();
+    fs::set_permissions(&browser, fs::Permissions::from_mode(0o755)).unwrap();
+    let server = Server::with_browser(&["five-bar", "--open", "--token"], &browser);
+    let url = format!("http://127.0.0.1:{}/{}/", server.port, server.token);
+    let begin = std::time::Instant::now();
+    while fs::read_to_string(&seen).unwrap_or_default() != url {
+        assert!(begin.elapsed().as_secs() < 60, "{:?} is not {url}", fs::read_to_string(&seen));
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
 }
 
 #[test]
