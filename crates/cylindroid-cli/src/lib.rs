@@ -1,10 +1,12 @@
 //! The command line of cylindroid, and the server of its viewer for programs that show a robot.
 //!
-//! The binary `cylindroid` is [`run`]; the Python package starts the viewer by [`show::Viewer`].
+//! The binary `cylindroid` is [`run`], and so is the command of the Python package, which starts the
+//! viewer by [`show::Viewer`].
 
 mod args;
 mod commands;
 mod diagnostic;
+mod exit;
 mod flags;
 mod number_file;
 mod obstacle;
@@ -22,29 +24,26 @@ pub mod show {
 
 use std::ffi::OsString;
 use std::io::{self, BufWriter, Write};
-use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
 
 use crate::args::Cli;
+pub use crate::exit::Exit;
 
-/// Exit code of an error.
-const ERROR: u8 = 2;
-
-/// Runs the command line with these words, the name of the program first. Returns the exit code: 0
-/// success, 1 negative answer, 2 error. A closed pipe counts as success.
-pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// Runs the command line with these words, the name of the program first. A closed
+/// pipe counts as success.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
     match attempt(words) {
         Ok(code) => code,
-        Err(error) if diagnostic::is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) if diagnostic::is_closed_pipe(&error) => Exit::SUCCESS,
         Err(error) => {
             diagnostic::print(&error);
-            ExitCode::from(ERROR)
+            Exit::ERROR
         }
     }
 }
 
-fn attempt(words: impl IntoIterator<Item = OsString>) -> anyhow::Result<ExitCode> {
+fn attempt(words: impl IntoIterator<Item = OsString>) -> anyhow::Result<Exit> {
     let words = words.into_iter().map(|word| {
         word.into_string().map_err(|word| {
             let hint = "rename the file or leave out these bytes";
@@ -54,14 +53,14 @@ fn attempt(words: impl IntoIterator<Item = OsString>) -> anyhow::Result<ExitCode
     let words = values::join_after_commas(words.collect::<anyhow::Result<Vec<String>>>()?);
     if words.len() <= 1 {
         Cli::command().print_help()?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(Exit::SUCCESS);
     }
     let cli = match Cli::try_parse_from(&words) {
         Ok(cli) => cli,
         Err(message) => {
             // clap prints help and version to stdout with exit code 0.
             message.print()?;
-            return Ok(ExitCode::from(u8::try_from(message.exit_code()).unwrap_or(ERROR)));
+            return Ok(if message.use_stderr() { Exit::ERROR } else { Exit::SUCCESS });
         }
     };
     let mut out = BufWriter::new(io::stdout().lock());

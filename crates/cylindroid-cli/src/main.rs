@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cylindroid_cli::run(std::env::args_os())
+    cylindroid_cli::run(std::env::args_os()).into()
 }

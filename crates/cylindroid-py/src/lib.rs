@@ -11,6 +11,7 @@ mod arrow;
 mod closed;
 mod collision;
 mod columns;
+mod command_line;
 mod control;
 mod coordinates;
 mod error;
@@ -51,6 +52,8 @@ mod _core {
     use crate::collision::{PyCollisionModel, PyDistances};
     #[pymodule_export]
     use crate::columns::PyColumns;
+    #[pymodule_export]
+    use crate::command_line::run_command_line;
     #[pymodule_export]
     use crate::control::{
         PyAdmittance, PyHybridCommand, PyHybridController, PyInternalForceCommand,

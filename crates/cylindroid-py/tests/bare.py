@@ -1,6 +1,8 @@
 """Run where nothing but the wheel and what it needs is installed."""
 
 import importlib.metadata
+import pathlib
+import subprocess
 import sys
 import urllib.request
 
@@ -19,3 +21,6 @@ assert robot.fk(robot.home).shape == (4, 4)
 with cy.show(robot, open=False) as view:
     assert b"app" in urllib.request.urlopen(view.url).read()
 assert cy.pinv(robot.jacobian(np.tile(robot.home, (3, 1)))).matrix.shape == (3, 7, 6)
+# The wheel installs the command.
+command = pathlib.Path(sys.executable).parent / "cylindroid"
+subprocess.run([command, "fk", "panda"], check=True, stdout=subprocess.DEVNULL)

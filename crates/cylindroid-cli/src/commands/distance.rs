@@ -2,7 +2,6 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 
 use cylindroid::Mechanism;
 use cylindroid::collision::{CollisionModel, CollisionOptions, NearPair};
@@ -10,7 +9,8 @@ use cylindroid::model::formats::srdf;
 use serde::Serialize;
 
 use crate::args::{CollisionArgs, DistanceArgs};
-use crate::commands::shared::{Style, answer, configuration, load};
+use crate::commands::shared::{Style, configuration, load};
+use crate::exit::Exit;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
@@ -70,11 +70,7 @@ pub(crate) fn collision_model(
     Ok(model)
 }
 
-pub(crate) fn run(
-    args: &DistanceArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &DistanceArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.configuration.model, &[])?;
     let mut model =
         collision_model(&robot, &args.collision, args.configuration.model.srdf.as_deref())?;
@@ -118,7 +114,7 @@ pub(crate) fn run(
             ignored: ignored.collect(),
         };
         output::json(out, &json)?;
-        return Ok(answer(free));
+        return Ok(Exit::answer(free));
     }
     let note = match model.bodies().iter().any(|b| b.link.is_some()) {
         true => output::outside_note(&outside_limits),
@@ -166,5 +162,5 @@ pub(crate) fn run(
         let rows = model.ignored().iter().map(|i| vec![i.what.clone(), i.why.clone()]);
         output::table(out, &columns, rows)?;
     }
-    Ok(answer(free))
+    Ok(Exit::answer(free))
 }

@@ -1,12 +1,12 @@
 //! `fk`: where frames are.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use serde::Serialize;
 
 use crate::args::FkArgs;
 use crate::commands::shared::{Style, configuration, end_effector, load};
+use crate::exit::Exit;
 use crate::output::{self, Align, PoseJson};
 
 #[derive(Debug, Serialize)]
@@ -36,7 +36,7 @@ struct FrameJson<'a> {
     pose: PoseJson,
 }
 
-pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.configuration.model, &[])?;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let outside_limits = output::outside_limits(&robot, state.q());
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
             let frames =
                 ids.map(|(frame, id)| FrameJson { frame, pose: state.pose(id).into() }).collect();
             output::json(out, &AllJson { model, q, joint_names, outside_limits, frames })?;
-            return Ok(ExitCode::SUCCESS);
+            return Ok(Exit::SUCCESS);
         }
         print_posture(out, model, q, &outside_limits)?;
         let mut columns = vec![("frame", Align::Left)];
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         });
         writeln!(out)?;
         output::table(out, &columns, rows)?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(Exit::SUCCESS);
     }
 
     let end_effector = end_effector(&robot, &args.frame)?;
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     if style == Style::Json {
         let pose = pose.into();
         output::json(out, &FkJson { model, frame, q, joint_names, outside_limits, pose })?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(Exit::SUCCESS);
     }
     print_posture(out, model, q, &outside_limits)?;
     let quaternion = pose.rotation.to_quaternion();
@@ -95,7 +95,7 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         &["x axis", "y axis", "z axis", "origin [m]"],
         &rows,
     )?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 fn print_posture(

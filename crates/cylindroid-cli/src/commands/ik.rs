@@ -3,7 +3,6 @@
 mod goals;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::ik::{
     Budget, FoundBy, Goal, IkOptions, MissReason, Solution, Solver, Task, solve, solve_distinct,
@@ -15,7 +14,8 @@ use self::goals::{GoalJson, Goals, controlled, first_frame, goals};
 use super::target::errors;
 use crate::args::IkArgs;
 use crate::commands::distance::collision_model;
-use crate::commands::shared::{Style, answer, configuration, limited, load};
+use crate::commands::shared::{Style, configuration, limited, load};
+use crate::exit::Exit;
 use crate::output::{self, Align, PoseJson, number};
 
 #[derive(Debug, Serialize)]
@@ -130,7 +130,7 @@ impl From<&MissReason> for ReasonJson {
     }
 }
 
-pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = limited(load(&args.configuration.model, &[])?, &args.limits)?;
     let start = configuration(&robot, &args.configuration)?;
     let Goals { all: goals, description, half_spaces, posture, criterion } =
@@ -217,7 +217,7 @@ pub(crate) fn run(args: &IkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report, (&description, controlled(&goals)), &found)?,
     }
-    Ok(answer(first.success))
+    Ok(Exit::answer(first.success))
 }
 
 /// The solutions of a closed chain, or one failure.

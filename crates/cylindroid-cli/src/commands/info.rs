@@ -1,7 +1,6 @@
 //! `info`: what a model is.
 
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 use cylindroid::Mechanism;
 use cylindroid::ik::Analytic;
@@ -10,6 +9,7 @@ use serde::Serialize;
 
 use crate::args::InfoArgs;
 use crate::commands::shared::{Style, limited, load};
+use crate::exit::Exit;
 use crate::output::{self, Align, MimicJson};
 
 #[derive(Debug, Serialize)]
@@ -140,14 +140,14 @@ struct IgnoredJson<'a> {
     why: &'a str,
 }
 
-pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = limited(load(&args.model, &[])?, &args.limits)?;
     let info = describe(&robot);
     match style {
         Style::Json => output::json(out, &info)?,
         Style::Table => print(out, &robot, &info)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// What a mechanism is.

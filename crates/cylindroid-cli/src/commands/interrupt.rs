@@ -3,9 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Exit code after Ctrl-C, as of a shell: 128 and the number of the signal.
-pub(crate) const INTERRUPTED: u8 = 130;
-
 /// True from the first Ctrl-C on.
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 

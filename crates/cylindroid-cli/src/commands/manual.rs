@@ -3,13 +3,13 @@
 use std::fs;
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 
 use clap::{Command, CommandFactory};
 use serde::Serialize;
 
 use crate::args::{Cli, CompletionsArgs, ManArgs};
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::{output, trajectory};
 
 #[derive(Debug, Serialize)]
@@ -27,7 +27,7 @@ pub(crate) fn completions(
     args: &CompletionsArgs,
     style: Style,
     out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+) -> anyhow::Result<Exit> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "cylindroid", &mut script);
     if style == Style::Json {
@@ -36,10 +36,10 @@ pub(crate) fn completions(
     } else {
         out.write_all(&script)?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
-pub(crate) fn man(args: &ManArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn man(args: &ManArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let folder = &args.folder;
     fs::create_dir_all(folder).map_err(|error| trajectory::cannot_write(folder, &error))?;
     let mut whole = Cli::command().disable_help_subcommand(true);
@@ -53,7 +53,7 @@ pub(crate) fn man(args: &ManArgs, style: Style, out: &mut dyn Write) -> anyhow::
     } else {
         pages.iter().try_for_each(|page| writeln!(out, "{page}"))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// Writes the page of a command and gives its path.

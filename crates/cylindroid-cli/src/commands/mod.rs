@@ -22,13 +22,13 @@ mod view;
 mod zone;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use self::shared::Style;
 use crate::args::{Cli, Command};
+use crate::exit::Exit;
 
 /// Runs the command of a command line.
-pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(cli: &Cli, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let style = if cli.json { Style::Json } else { Style::Table };
     match &cli.command {
         Command::Models => models::run(style, out),

@@ -1,12 +1,12 @@
 //! `models`: the catalogue.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::catalogue;
 use serde::Serialize;
 
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
@@ -24,7 +24,7 @@ struct ModelJson {
     source: String,
 }
 
-pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let models: Vec<ModelJson> = catalogue::entries()
         .into_iter()
         .map(|e| ModelJson {
@@ -38,7 +38,7 @@ pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode>
         .collect();
     if style == Style::Json {
         output::json(out, &ModelsJson { models })?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(Exit::SUCCESS);
     }
     let columns = [
         ("name", Align::Left),
@@ -55,5 +55,5 @@ pub(crate) fn run(style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode>
     output::table(out, &columns, rows)?;
     writeln!(out, "\nsources")?;
     output::pairs(out, models.into_iter().map(|m| (m.name, m.source)))?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }

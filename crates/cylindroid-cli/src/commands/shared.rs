@@ -1,6 +1,4 @@
-//! Shared by the commands: output style, exit code, model, configuration and frame.
-
-use std::process::ExitCode;
+//! Shared by the commands: output style, model, configuration and frame.
 
 use cylindroid::model::Mechanism;
 use cylindroid::model::formats::srdf;
@@ -15,11 +13,6 @@ use crate::values::Assignment;
 pub(crate) enum Style {
     Table,
     Json,
-}
-
-/// Exit code of a positive (0) or negative (1) answer.
-pub(crate) fn answer(yes: bool) -> ExitCode {
-    ExitCode::from(u8::from(!yes))
 }
 
 /// Loads the model, with these joints actuated if any are named.

@@ -1,7 +1,6 @@
 //! `view`: serves the web viewer.
 
 use std::io::{ErrorKind, Write};
-use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::Context;
@@ -13,6 +12,7 @@ use crate::args::ViewArgs;
 use crate::commands::shared::{
     Style, all_actuated, configuration, end_effector, limited, load, within_limits,
 };
+use crate::exit::Exit;
 use crate::viewer::{Server, Start, StartBodies, check_count, page_is_built};
 
 /// The usual port: an address that can be kept, with what the browser remembers of it.
@@ -26,7 +26,7 @@ struct ViewJson<'a> {
     page: bool,
 }
 
-pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let start = start(args)?;
     let model = start.mechanism.name().to_owned();
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow:
     })?;
     // Unfinished reports are discarded.
     runtime.shutdown_background();
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// At the port of `--port`; without it at the usual one, or at a free one where that is taken.

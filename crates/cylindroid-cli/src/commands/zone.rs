@@ -1,7 +1,6 @@
 //! `zone`: the largest ball or box without singularities.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::Mechanism;
 use cylindroid::sweep::{Zone, ZoneBound, ZoneOptions};
@@ -9,6 +8,7 @@ use serde::Serialize;
 
 use crate::args::ZoneArgs;
 use crate::commands::shared::{Style, load, reference_or_tool};
+use crate::exit::Exit;
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]
@@ -52,7 +52,7 @@ struct BoundJson<'a> {
     q: &'a [f64],
 }
 
-pub(crate) fn run(args: &ZoneArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &ZoneArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.model, &args.actuated)?;
     let frame = reference_or_tool(&robot, &args.frame)?;
     let at = args.at.iter().map(|at| (at.pair().0.to_owned(), Some(at.pair().1)));
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &ZoneArgs, style: Style, out: &mut dyn Write) -> anyhow:
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 fn json<'a>(robot: &'a Mechanism, frame: &'a str, zone: &'a Zone) -> ZoneJson<'a> {

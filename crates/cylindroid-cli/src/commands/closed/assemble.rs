@@ -6,7 +6,6 @@ mod job;
 mod modes;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::Error;
 use cylindroid::closure::{Assembly, ModeOptions, assemble};
@@ -16,7 +15,8 @@ use serde::Serialize;
 use self::job::{Job, open_by, q_line};
 use super::ClosureErrorJson;
 use crate::args::AssembleArgs;
-use crate::commands::shared::{Style, answer, configuration, load};
+use crate::commands::shared::{Style, configuration, load};
+use crate::exit::Exit;
 use crate::output::{self, Align};
 use crate::values::Joints;
 
@@ -35,11 +35,7 @@ struct AssembleJson<'a> {
     at_limit: Vec<&'a str>,
 }
 
-pub(crate) fn run(
-    args: &AssembleArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &AssembleArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let mechanism = load(&args.configuration.model, &[])?;
     let job = Job {
         names: output::joint_names(&mechanism),
@@ -70,7 +66,7 @@ pub(crate) fn run(
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &mechanism, &found, &report)?,
     }
-    Ok(answer(found.closed))
+    Ok(Exit::answer(found.closed))
 }
 
 /// The places of coordinates by their names, by those of their joints, or `actuated`.

@@ -1,7 +1,6 @@
 //! `grasp`: force closure of the contacts on an object, and its mobility without friction.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::closure::{
     ContactProperties, FingerContact, GraspMetric, GraspQuality, WrenchSpace, grasp_contacts,
@@ -13,7 +12,8 @@ use serde::Serialize;
 
 use crate::args::GraspArgs;
 use crate::commands::closed::immobilisation::{CurvatureJson, ImmobilisationJson};
-use crate::commands::shared::{Style, answer, configuration, load};
+use crate::commands::shared::{Style, configuration, load};
+use crate::exit::Exit;
 use crate::output::{self, Align, number};
 use crate::values::components;
 
@@ -59,7 +59,7 @@ struct ContactJson<'a> {
     curvature: CurvatureJson,
 }
 
-pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let mechanism = load(&args.configuration.model, &[])?;
     let q = configuration(&mechanism, &args.configuration)?;
     let object = match &args.frame {
@@ -110,7 +110,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report, &quality)?,
     }
-    Ok(answer(quality.closed))
+    Ok(Exit::answer(quality.closed))
 }
 
 /// The contacts on the object; an error where there are none.

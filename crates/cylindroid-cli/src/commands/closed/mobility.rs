@@ -1,7 +1,6 @@
 //! `mobility`: the motions of a mechanism, and the wrenches that its structure resists.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::closure::{
     Constraint, Diagnosis, JointMobility, Mobility, MobilityCounts, ModeOptions, MotionBlock,
@@ -16,6 +15,7 @@ use super::singularity::{self, FiniteJson, SingularityJson};
 use super::{HeadJson, Posed, list};
 use crate::args::MobilityArgs;
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::output::{self, Align, number};
 
 #[derive(Debug, Serialize)]
@@ -92,11 +92,7 @@ struct JointJson<'a> {
     idle: bool,
 }
 
-pub(crate) fn run(
-    args: &MobilityArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &MobilityArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let posed = Posed::new(&args.closed)?;
     if let Some(starts) = args.modes {
         let options = ModeOptions { starts, seed: args.seed };
@@ -107,7 +103,7 @@ pub(crate) fn run(
         Style::Json => output::json(out, &describe(&posed, &mobility, &diagnosis, &limbs))?,
         Style::Table => print(out, &posed, &mobility, &diagnosis, &limbs)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// The object of `--json`.

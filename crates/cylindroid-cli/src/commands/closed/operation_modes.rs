@@ -1,7 +1,6 @@
 //! `mobility --modes`: the operation modes of a mechanism, and where they meet.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::closure::{
     ModeMeeting, ModeOptions, OperationMode, OperationModes, operation_modes,
@@ -10,7 +9,8 @@ use serde::Serialize;
 
 use super::singularity::CountsJson;
 use super::{Posed, further_modes};
-use crate::commands::shared::{Style, answer};
+use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
@@ -64,14 +64,14 @@ pub(super) fn run(
     options: ModeOptions,
     style: Style,
     out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+) -> anyhow::Result<Exit> {
     let reference = Some(posed.chain.reference);
     let found = operation_modes(&posed.mechanism, &posed.q, reference, options)?;
     match style {
         Style::Json => output::json(out, &describe(posed, options, &found))?,
         Style::Table => print(out, posed, &found)?,
     }
-    Ok(answer(!found.modes.is_empty()))
+    Ok(Exit::answer(!found.modes.is_empty()))
 }
 
 fn describe<'a>(

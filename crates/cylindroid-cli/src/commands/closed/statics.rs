@@ -1,7 +1,6 @@
 //! `statics`: torques for a wrench, and the forces in loops and contacts.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::closure::{
     Mobility, MotionSpace, StaticLoad, contact_forces, joint_torques, row_compliance,
@@ -15,6 +14,7 @@ use super::transmitted_wrench::TransmittedWrenchJson;
 use super::{HeadJson, Posed, measured, stiffness, transmitted_wrench};
 use crate::args::StaticsArgs;
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
@@ -50,18 +50,14 @@ struct InternalJson {
     forces: Vec<TransmittedWrenchJson>,
 }
 
-pub(crate) fn run(
-    args: &StaticsArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &StaticsArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let posed = Posed::new(&args.closed)?;
     let report = find(&posed, args)?;
     match style {
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &posed, &report)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 fn find<'a>(posed: &'a Posed, args: &'a StaticsArgs) -> Result<StaticsJson<'a>> {

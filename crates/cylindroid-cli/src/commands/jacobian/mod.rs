@@ -3,7 +3,6 @@
 mod inverse;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::kinematics::OrientationRates;
 use cylindroid::linalg::{Metric, Rank, Svd};
@@ -12,7 +11,8 @@ use serde::Serialize;
 
 use self::inverse::InverseJson;
 use crate::args::{Angles, JacobianArgs, ReferenceName};
-use crate::commands::shared::{Style, answer, configuration, end_effector, load};
+use crate::commands::shared::{Style, configuration, end_effector, load};
+use crate::exit::Exit;
 use crate::output;
 
 #[derive(Debug, Serialize)]
@@ -56,11 +56,7 @@ struct AnalyticalJson {
     exists: bool,
 }
 
-pub(crate) fn run(
-    args: &JacobianArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &JacobianArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.configuration.model, &[])?;
     let degrees = args.configuration.degrees;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
@@ -112,7 +108,7 @@ pub(crate) fn run(
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report)?,
     }
-    Ok(answer(report.inverse.as_ref().is_none_or(|inverse| inverse.exists)))
+    Ok(Exit::answer(report.inverse.as_ref().is_none_or(|inverse| inverse.exists)))
 }
 
 fn orientation_rates(angles: Angles) -> (OrientationRates, &'static str) {

@@ -4,17 +4,17 @@ mod file;
 mod report;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::sweep::{LocusKind, Map, MapOptions};
 
 use self::report::{MapJson, report};
 use crate::args::MapArgs;
-use crate::commands::shared::{Style, answer, load, reference_or_tool};
+use crate::commands::shared::{Style, load, reference_or_tool};
+use crate::exit::Exit;
 use crate::output::{self, Align, number};
 use crate::plot;
 
-pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.model, &args.actuated)?;
     if let Some(path) = &args.plot {
         plot::check(path)?;
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
         Style::Json => output::json(out, &report)?,
         Style::Table => print(out, &report)?,
     }
-    Ok(answer(!map.modes.is_empty()))
+    Ok(Exit::answer(!map.modes.is_empty()))
 }
 
 fn print(out: &mut dyn Write, report: &MapJson<'_>) -> anyhow::Result<()> {

@@ -12,7 +12,6 @@ mod twist_goal;
 mod waypoints;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::Servo;
 use cylindroid::closure::LoopClosureError;
@@ -26,7 +25,8 @@ use self::job::{Goal, Job};
 use self::report::{Deviation, Result, Way};
 pub(crate) use self::tasks::load_tasks;
 use crate::args::MoveArgs;
-use crate::commands::shared::{Style, answer};
+use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::plot;
 use crate::trajectory::{self, Trajectory};
 
@@ -36,7 +36,7 @@ const MAX_RESTARTS: usize = 200;
 /// Steps between two progress messages.
 const PROGRESS_STEPS: u64 = 256;
 
-pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     if tasks::are_asked_for(args) {
         return tasks::run(args, style, out);
     }
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow:
     }
 
     report::write(&job, &result, style, out)?;
-    Ok(answer(result.outcome.reached))
+    Ok(Exit::answer(result.outcome.reached))
 }
 
 /// Runs the motion.

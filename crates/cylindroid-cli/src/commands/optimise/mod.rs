@@ -3,7 +3,6 @@
 mod report;
 
 use std::io::Write;
-use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use cylindroid::control::Task;
@@ -13,15 +12,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget};
 use self::report::Report;
 use crate::args::OptimiseArgs;
 use crate::commands::configurations::Chosen;
-use crate::commands::interrupt::{INTERRUPTED, Interrupt};
-use crate::commands::shared::{Style, answer, end_effector, load, parametric};
+use crate::commands::interrupt::Interrupt;
+use crate::commands::shared::{Style, end_effector, load, parametric};
+use crate::exit::Exit;
 use crate::output;
 
-pub(crate) fn run(
-    args: &OptimiseArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &OptimiseArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.model, &[])?;
     let model = parametric(&args.model)?;
     let chosen = Chosen::from(args);
@@ -66,7 +62,7 @@ pub(crate) fn run(
     bar.finish_and_clear();
     let Some(found) = found else {
         writeln!(std::io::stderr(), "interrupted")?;
-        return Ok(ExitCode::from(INTERRUPTED));
+        return Ok(Exit::INTERRUPTED);
     };
     let configurations = chosen.words(&source, search.configurations());
     let seconds = started.elapsed().as_secs_f64();
@@ -75,5 +71,5 @@ pub(crate) fn run(
         Style::Json => output::json(out, &report)?,
         Style::Table => report.print(out)?,
     }
-    Ok(answer(!found.designs.is_empty()))
+    Ok(Exit::answer(!found.designs.is_empty()))
 }

@@ -10,7 +10,6 @@ mod tables;
 mod twists;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::{EndEffector, State};
 use serde_json::value::RawValue;
@@ -19,13 +18,10 @@ use self::find::find;
 use self::twists::Twists;
 use crate::args::ScrewsArgs;
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::plot;
 
-pub(crate) fn run(
-    args: &ScrewsArgs,
-    style: Style,
-    out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &ScrewsArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     if let Some(path) = &args.plot {
         plot::check(path)?;
     }
@@ -44,7 +40,7 @@ pub(crate) fn run(
         plot::screws::draw(&found.twists.title(), twists, &found.system, path)?;
     }
     report::write(&found, style, out)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// The object of `--json` for a mechanism; `args` contains all other options.

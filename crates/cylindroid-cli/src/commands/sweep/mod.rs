@@ -6,7 +6,6 @@ mod report;
 use std::cell::Cell;
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 use std::time::Instant;
 
 use cylindroid::control::Task;
@@ -19,11 +18,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use self::report::{Head, Outcome};
 use crate::args::SweepArgs;
 use crate::commands::configurations::Chosen;
-use crate::commands::interrupt::{INTERRUPTED, Interrupt};
+use crate::commands::interrupt::Interrupt;
 use crate::commands::shared::{Style, end_effector, load, parametric};
+use crate::exit::Exit;
 use crate::output;
 
-pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.model, &[])?;
     let chosen = Chosen::from(args);
     let source = chosen.source(&robot)?;
@@ -85,13 +85,13 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     let seconds = started.elapsed().as_secs_f64();
     let Some(outcome) = outcome else {
         writeln!(std::io::stderr(), "interrupted")?;
-        return Ok(ExitCode::from(INTERRUPTED));
+        return Ok(Exit::INTERRUPTED);
     };
     match style {
         Style::Json => output::json(out, &outcome.json(&head, seconds))?,
         Style::Table => outcome.print(&head, out)?,
     }
-    Ok(if outcome.complete() { ExitCode::SUCCESS } else { ExitCode::from(INTERRUPTED) })
+    Ok(if outcome.complete() { Exit::SUCCESS } else { Exit::INTERRUPTED })
 }
 
 fn is_csv(path: &Path) -> bool {

@@ -1,7 +1,6 @@
 //! `assemble --to`: prescribed coordinates go to their goal, the loops stay closed.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::closure::{
     ContinuationOptions, ContinuationResult, PathEnd, PathSingularity, track_path,
@@ -12,7 +11,8 @@ use serde::Serialize;
 use super::job::{Job, open_by, q_line};
 use crate::commands::closed::ClosureErrorJson;
 use crate::commands::closed::singularity::motion_in_words;
-use crate::commands::shared::{Style, answer};
+use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::output::{self, Align, ScrewJson, number};
 
 #[derive(Debug, Serialize)]
@@ -78,7 +78,7 @@ pub(super) fn run(
     least_distance: Option<f64>,
     style: Style,
     out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+) -> anyhow::Result<Exit> {
     let mut options = ContinuationOptions::default();
     if let Some(least) = least_distance {
         options.least_distance = least;
@@ -88,7 +88,7 @@ pub(super) fn run(
         Style::Json => output::json(out, &describe(job, goal, options, &way))?,
         Style::Table => print(out, job, goal, &way)?,
     }
-    Ok(answer(way.end == PathEnd::Reached))
+    Ok(Exit::answer(way.end == PathEnd::Reached))
 }
 
 fn start<'a>(job: &'a Job<'_>, way: &'a ContinuationResult) -> &'a [f64] {

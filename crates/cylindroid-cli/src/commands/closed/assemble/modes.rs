@@ -1,14 +1,14 @@
 //! `assemble --modes`: the ways in which the loops close.
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::closure::{AssemblyModes, Mode, ModeOptions, assembly_modes};
 use serde::Serialize;
 
 use super::job::{Job, open_by, q_line};
 use crate::commands::closed::{ClosureErrorJson, further_modes};
-use crate::commands::shared::{Style, answer};
+use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::output::{self, Align};
 
 #[derive(Debug, Serialize)]
@@ -49,13 +49,13 @@ pub(super) fn run(
     options: ModeOptions,
     style: Style,
     out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+) -> anyhow::Result<Exit> {
     let found = assembly_modes(job.mechanism, &job.guess, &job.prescribed, options)?;
     match style {
         Style::Json => output::json(out, &describe(job, options, &found))?,
         Style::Table => print(out, job, &found)?,
     }
-    Ok(answer(!found.modes.is_empty()))
+    Ok(Exit::answer(!found.modes.is_empty()))
 }
 
 fn describe<'a>(job: &'a Job<'_>, options: ModeOptions, found: &'a AssemblyModes) -> ModesJson<'a> {

@@ -2,7 +2,6 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::process::ExitCode;
 
 use cylindroid::Error;
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
@@ -12,6 +11,7 @@ use super::super::measured::Task;
 use super::super::{Posed, measured};
 use crate::args::{ManipulabilityArgs, MetricName};
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::number_file;
 use crate::output::{self, Align, number};
 use crate::values::Weights;
@@ -41,7 +41,7 @@ pub(super) fn run(
     args: &ManipulabilityArgs,
     style: Style,
     out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+) -> anyhow::Result<Exit> {
     if args.metric == MetricName::Inertia {
         return Err(Error::InvalidOption {
             option: "--metric",
@@ -84,7 +84,7 @@ pub(super) fn run(
     let rows: Vec<&[f64]> = numbers.chunks(ManipulabilityBatch::WIDTH).collect();
     if style == Style::Table {
         print(out, &posed, (args.metric, is_task.then_some(&components)), &rows)?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(Exit::SUCCESS);
     }
     let own = [("wu", args.wu.is_some()), ("wq", args.wq.is_some())];
     let report = ConfigurationsJson {
@@ -100,7 +100,7 @@ pub(super) fn run(
         rows,
     };
     output::json(out, &report)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// Numbers that are the same everywhere once, the others in a table.

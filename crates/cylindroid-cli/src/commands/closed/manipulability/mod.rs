@@ -6,7 +6,6 @@ mod find;
 mod report;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use serde_json::value::RawValue;
 
@@ -14,13 +13,14 @@ use self::find::find;
 use super::{Posed, measured};
 use crate::args::ManipulabilityArgs;
 use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::plot;
 
 pub(crate) fn run(
     args: &ManipulabilityArgs,
     style: Style,
     out: &mut dyn Write,
-) -> anyhow::Result<ExitCode> {
+) -> anyhow::Result<Exit> {
     if let Some(path) = &args.configurations {
         return configurations::run(path, args, style, out);
     }
@@ -43,7 +43,7 @@ pub(crate) fn run(
         found.drawn = Some((args.view.view(), planes));
     }
     report::write(&found, style, out)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Exit::SUCCESS)
 }
 
 /// The object of `--json`; `args` say everything but the configuration.

@@ -6,7 +6,6 @@ mod report;
 mod walls;
 
 use std::io::Write;
-use std::process::ExitCode;
 
 use cylindroid::control::Status;
 
@@ -14,7 +13,8 @@ pub(crate) use self::file::load as load_tasks;
 use self::job::TaskJob;
 use self::report::Report;
 use crate::args::MoveArgs;
-use crate::commands::shared::{Style, answer};
+use crate::commands::shared::Style;
+use crate::exit::Exit;
 use crate::plot;
 use crate::task_trajectory::TaskTrajectory;
 use crate::trajectory;
@@ -24,7 +24,7 @@ pub(super) fn are_asked_for(args: &MoveArgs) -> bool {
     args.tasks.tasks.is_some() || args.tasks.avoids() || args.target.has_frame_tasks()
 }
 
-pub(super) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<ExitCode> {
+pub(super) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let mut job = TaskJob::new(args)?;
     let format = args.out.as_deref().map(trajectory::format_of).transpose()?;
     if let Some(path) = &args.plot {
@@ -47,5 +47,5 @@ pub(super) fn run(args: &MoveArgs, style: Style, out: &mut dyn Write) -> anyhow:
         }
     }
     Report { job: &job, result: &result }.write(style, out)?;
-    Ok(answer(result.status == Status::Reached))
+    Ok(Exit::answer(result.status == Status::Reached))
 }
