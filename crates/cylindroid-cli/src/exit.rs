@@ -1,4 +1,4 @@
-//! What the command line tells the program that called it.
+//! The exit codes of the command line.
 
 use std::process::ExitCode;
 

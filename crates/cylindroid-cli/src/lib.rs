@@ -30,11 +30,11 @@ use clap::{CommandFactory, Parser};
 use crate::args::Cli;
 pub use crate::exit::Exit;
 
-/// Runs the command line with these words, the name of the program first. A closed
-/// pipe counts as success.
+/// Runs the command line with these words, the name of the program first. A closed pipe counts as
+/// success.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
     match attempt(words) {
-        Ok(code) => code,
+        Ok(exit) => exit,
         Err(error) if diagnostic::is_closed_pipe(&error) => Exit::SUCCESS,
         Err(error) => {
             diagnostic::print(&error);

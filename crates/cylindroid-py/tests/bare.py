@@ -1,7 +1,8 @@
 """Run where nothing but the wheel and what it needs is installed."""
 
 import importlib.metadata
-import pathlib
+import os
+import shutil
 import subprocess
 import sys
 import urllib.request
@@ -22,5 +23,6 @@ with cy.show(robot, open=False) as view:
     assert b"app" in urllib.request.urlopen(view.url).read()
 assert cy.pinv(robot.jacobian(np.tile(robot.home, (3, 1)))).matrix.shape == (3, 7, 6)
 # The wheel installs the command.
-command = pathlib.Path(sys.executable).parent / "cylindroid"
+command = shutil.which("cylindroid", path=os.path.dirname(sys.executable))
+assert command
 subprocess.run([command, "fk", "panda"], check=True, stdout=subprocess.DEVNULL)

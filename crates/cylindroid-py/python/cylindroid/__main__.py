@@ -8,7 +8,7 @@ from ._core import run_command_line
 
 def main() -> int:
     """Runs the command line with the words of this process; its exit code."""
-    # The interpreter's own handler waits until the command returns, which `view` does not.
+    # Ctrl-C ends the process, as it ends the binary; Python's handler would wait for the command.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return run_command_line(["cylindroid", *sys.argv[1:]])
 
