@@ -7,6 +7,8 @@ mod builder;
 pub mod catalogue;
 mod characteristic_length;
 #[cfg(feature = "formats")]
+mod closing_joint;
+#[cfg(feature = "formats")]
 mod closure_frames;
 #[cfg(feature = "formats")]
 mod collada;

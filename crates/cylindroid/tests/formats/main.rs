@@ -7,6 +7,7 @@ mod broken;
 mod carried_robots;
 mod catalogue;
 mod closed_file;
+mod closing_limits;
 mod closures;
 mod contact_curvature;
 mod corpus;

@@ -122,8 +122,11 @@ fn cassie_has_its_loops() {
         closed_at_home(&m, 1e-12);
         let text = std::fs::read_to_string(&path).unwrap();
         let world = usize::from(text.contains(">world<"));
-        assert_eq!(m.links().len(), text.matches("<link name").count() + world, "{file}");
-        let joints = m.joints().len() + m.loops().len() + gearboxes;
+        // Loops that an actuated joint closes are cut in a link.
+        let cut = m.loops().iter().filter(|l| l.name.ends_with(".weld")).count();
+        assert_eq!(cut, if file == "cassie" { 2 } else { 0 }, "{file}");
+        assert_eq!(m.links().len(), text.matches("<link name").count() + world + cut, "{file}");
+        let joints = m.joints().len() - cut + m.loops().len() + gearboxes;
         assert_eq!(joints, text.matches("<joint name").count(), "{file}");
         // A connected graph has as many loops as joints beyond a tree.
         assert_eq!(m.joints().len(), m.links().len() - 1);

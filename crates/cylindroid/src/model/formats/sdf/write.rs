@@ -124,7 +124,7 @@ impl<'d> Sdf<'d> {
             builder.joint(graph.branch(joint, branch));
         }
         for &j in &spanned.loops {
-            builder.loop_joint(graph.closing(&self.joints[j], ends[j]));
+            builder.closing_joint(graph.closing(&self.joints[j], ends[j]));
         }
         if let Some(&first) = spanned.loops.first() {
             let node = self.joints[first].node;

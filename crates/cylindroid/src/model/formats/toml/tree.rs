@@ -259,7 +259,7 @@ fn close(world: &mut World<'_>, joint: &JointEntry<'_>) -> Result<()> {
         }
     }
     let world_from_joint = Pose::from_translation(joint.origin.unwrap_or(world_from_a.translation));
-    world.builder.loop_joint(LoopJointSpec {
+    world.builder.closing_joint(LoopJointSpec {
         name: joint.name.to_owned(),
         kind: joint.kind,
         a: a.to_owned(),
