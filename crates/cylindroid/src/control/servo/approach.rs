@@ -32,18 +32,40 @@ pub(super) fn scale(
     for (((way, rate), scale), limit) in
         displacements.iter().zip(velocities).zip(columns).zip(limits)
     {
-        let (way, rate) = ((way * scale).abs(), (rate * scale).abs());
-        let (a, jerk) = (BRAKING * limit.acceleration, BRAKING * limit.jerk);
-        // For most joints an upper bound of the stopping distance suffices.
-        if jerk == f64::INFINITY && way > stopping_distance_bound(rate, a, dt) {
-            continue;
-        }
-        // A joint that cannot move is left to the saturation.
-        if a > 0.0 && rate > 0.0 {
-            share = share.min(jerk_limited_stopping_velocity(way, a, jerk, dt) / rate);
-        }
+        share = share.min(share_of((way * scale).abs(), (rate * scale).abs(), limit, dt));
     }
     share
+}
+
+/// The same for displacements that are `time` times the velocities.
+pub(super) fn scale_for(
+    time: f64,
+    velocities: &[f64],
+    columns: &[f64],
+    limits: &[Limits],
+    dt: f64,
+) -> f64 {
+    let mut share = 1.0_f64;
+    for ((rate, scale), limit) in velocities.iter().zip(columns).zip(limits) {
+        let rate = (rate * scale).abs();
+        share = share.min(share_of(time * rate, rate, limit, dt));
+    }
+    share
+}
+
+/// The share of a velocity from which a joint stops within `way`.
+#[inline]
+fn share_of(way: f64, rate: f64, limit: &Limits, dt: f64) -> f64 {
+    let (a, jerk) = (BRAKING * limit.acceleration, BRAKING * limit.jerk);
+    // For most joints an upper bound of the stopping distance suffices.
+    if jerk == f64::INFINITY && way > stopping_distance_bound(rate, a, dt) {
+        return 1.0;
+    }
+    // A joint that cannot move is left to the saturation.
+    if a > 0.0 && rate > 0.0 {
+        return jerk_limited_stopping_velocity(way, a, jerk, dt) / rate;
+    }
+    1.0
 }
 
 /// The method with its own velocity bound scaled by the same factor: otherwise selectively damped

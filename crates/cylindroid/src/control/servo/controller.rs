@@ -18,6 +18,7 @@
 mod behind_plant;
 pub(super) mod condition;
 mod escaping;
+mod generic_rank;
 mod moving_target;
 mod stages;
 mod tracking;
@@ -29,6 +30,7 @@ use super::following::TargetFollower;
 use super::inertia_weights::InertiaWeights;
 use super::limits::{BrakingMargin, limits_of_servo};
 use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
+use super::nearest_pose::NearestPose;
 use super::options::ServoOptions;
 use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
@@ -46,10 +48,6 @@ use crate::linalg::{Matrix, Svd};
 use crate::model::{Limits, Mechanism};
 use crate::screws::NoInverse;
 use crate::spatial::Pose;
-use crate::tolerance::GENERIC_RANK;
-
-/// Configurations sampled for the generic rank.
-const GENERIC_CONFIGURATIONS: usize = 3;
 
 /// A Cartesian controller for one end effector.
 #[derive(Debug, Clone)]
@@ -91,6 +89,8 @@ pub struct Servo {
     last: Vec<f64>,
     /// Derivatives of the Jacobian; trees only.
     hessian: Vec<Matrix>,
+    /// To targets beyond reach; trees only.
+    nearest_pose: Option<Box<NearestPose>>,
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
     inertia: Option<Box<InertiaWeights>>,
@@ -201,6 +201,9 @@ impl Servo {
             saturator: Saturator::new(m, unknowns, coupled.is_some().then_some(rates)),
             hessian,
             last: vec![0.0; rates],
+            nearest_pose: coupled
+                .is_none()
+                .then(|| Box::new(NearestPose::new(&chain, mechanism.n(), m))),
             rates: vec![0.0; mechanism.n().max(rates)],
             accelerations: vec![0.0; mechanism.n().max(rates)],
             configuration: mechanism.home().to_vec(),
@@ -227,52 +230,6 @@ impl Servo {
             servo.find_generic_rank()
         };
         Ok(servo)
-    }
-
-    /// The largest rank of the task Jacobian over a few generic configurations.
-    fn find_generic_rank(&mut self) -> usize {
-        let n = self.mechanism.n();
-        (1..=GENERIC_CONFIGURATIONS)
-            .map(|sample| {
-                // Irrational steps: no configuration is aligned with another or with the axes.
-                let mut q: Vec<f64> =
-                    (0..n).map(|i| 0.3 + ((sample * n + i) as f64 * 0.618_034).fract()).collect();
-                for (x, c) in q.iter_mut().zip(self.mechanism.coordinates()) {
-                    if c.limits.lower == c.limits.upper {
-                        *x = c.limits.lower; // its only position
-                    }
-                }
-                self.chain.set(&q);
-                if let Some(inertia) = &mut self.inertia
-                    && inertia.weigh(&q, &self.chain, &mut self.space, None).is_err()
-                {
-                    return 0;
-                }
-                self.space.load(&self.chain, &mut self.task);
-                Svd::of(&self.task).rank(GENERIC_RANK).rank
-            })
-            .max()
-            .unwrap_or(0)
-    }
-
-    /// The same for a closed chain, at configurations near home.
-    fn find_actuated_rank(&mut self) -> Result<usize> {
-        let (mut rank, mut closed, mut free) = (0, 0, None);
-        for sample in 0..=GENERIC_CONFIGURATIONS {
-            let Some(q) = self.nearby_configuration(sample)? else { continue };
-            closed += 1;
-            self.load_configuration(&q)?;
-            self.load_jacobian(&q)?;
-            rank = rank.max(Svd::of(&self.task).rank(GENERIC_RANK).rank);
-            match self.coupled.as_ref().and_then(|c| c.uncontrolled()) {
-                Some(motion) if motion.share == 0.0 => free = Some(motion.clone()),
-                _ => return Ok(rank),
-            }
-        }
-        let Some(motion) = free.filter(|_| closed > 0) else {
-            return Err(super::coupled::not_assembled(&self.mechanism));
-        };
-        Err(super::coupled::not_actuated(&self.mechanism, &motion, self.options.task))
     }
 
     /// One step: [`Servo::joint_velocities`] are to be commanded until the next step.
@@ -346,7 +303,7 @@ impl Servo {
 
         let (saturation, braking) = match self.store_unlimited_rates(q, rank) {
             Some(braking) => (Saturation::NONE, braking),
-            None => self.store_limited_rates()?,
+            None => self.store_limited_rates(q, target.pose)?,
         };
 
         self.note_configuration(q);
@@ -464,6 +421,9 @@ impl Servo {
         }
         if let Some(escape) = &mut self.escape {
             escape.reset();
+        }
+        if let Some(nearest_pose) = &mut self.nearest_pose {
+            nearest_pose.reset();
         }
     }
 

@@ -12,7 +12,7 @@ use super::approach;
 use super::task_space::TaskSpace;
 use crate::control::solver::saturation::Curvature;
 use crate::kinematics::{Chain, ReferenceFrame};
-use crate::linalg::Matrix;
+use crate::linalg::{Matrix, dot, norm};
 use crate::model::Limits;
 use crate::spatial::Vec3;
 
@@ -25,6 +25,8 @@ pub(super) struct Edge<'a> {
     pub(super) dt: f64,
     /// Memory for the derivatives of the Jacobian, 6 x n for each coordinate.
     pub(super) hessian: &'a mut [Matrix],
+    /// The way to the nearest pose (scaled), where it is known.
+    pub(super) way: Option<&'a [f64]>,
 }
 
 impl Curvature for Edge<'_> {
@@ -50,8 +52,22 @@ impl Curvature for Edge<'_> {
         }
     }
 
-    fn share(&self, way: &[f64], rates: &[f64]) -> f64 {
-        approach::scale(way, rates, &self.space.columns, self.limits, self.dt)
+    fn share(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {
+        let columns = &self.space.columns;
+        let Some(known) = self.way else {
+            return approach::scale(way, rates, columns, self.limits, self.dt);
+        };
+        // The time at these velocities until the known pose is reached: of the joints on their way to
+        // it, and of the task, which does not see self-motions.
+        let ahead = known.iter().zip(rates).filter(|(way, rate)| *way * *rate > 0.0);
+        let ahead = ahead.map(|(way, _)| way * way).sum::<f64>().sqrt();
+        let (along, all) = (dot(gradient, known), dot(gradient, rates));
+        let of_task = if along > 0.0 && all > 0.0 { along / all } else { f64::INFINITY };
+        let time = of_task.min(ahead / norm(rates));
+        if !(time > 0.0 && time < f64::INFINITY) {
+            return approach::scale(way, rates, columns, self.limits, self.dt);
+        }
+        approach::scale_for(time, rates, columns, self.limits, self.dt)
     }
 }
 

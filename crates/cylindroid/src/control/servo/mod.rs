@@ -18,6 +18,7 @@ mod jerk_limited_stop;
 mod limits;
 mod loop_motions;
 mod named_inverse;
+mod nearest_pose;
 mod options;
 mod plant;
 mod projection;

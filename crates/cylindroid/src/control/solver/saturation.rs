@@ -20,6 +20,7 @@
 
 use curved::Curved;
 pub(in crate::control) use curved::{Curvature, Path};
+pub(in crate::control) use newton_step::NewtonStep;
 pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem, STRAIGHT};
 
 use super::active_set::{ActiveSet, Level, Objective};
@@ -383,6 +384,7 @@ pub(in crate::control) fn interval(
 }
 
 mod curved;
+mod newton_step;
 mod problem;
 #[cfg(test)]
 mod tests;

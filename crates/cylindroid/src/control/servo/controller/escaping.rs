@@ -11,12 +11,17 @@ use super::Servo;
 use crate::control::solver::saturation::{FED_FORWARD, Saturation};
 use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
+use crate::spatial::Pose;
 
 impl Servo {
     /// Bounds, computes and stores the joint velocities.
-    pub(super) fn store_limited_rates(&mut self) -> Result<(Saturation, BrakingState)> {
+    pub(super) fn store_limited_rates(
+        &mut self,
+        q: &[f64],
+        target: Pose,
+    ) -> Result<(Saturation, BrakingState)> {
         self.load_bounds();
-        let mut saturation = self.saturate()?;
+        let mut saturation = self.saturate(q, target)?;
         Error::check_finite("joint velocities", &self.primary)?;
         let share = self.progress();
         if share.is_some() && self.escape() {
@@ -74,6 +79,7 @@ impl Servo {
             limits: &self.limits,
             dt: self.options.dt,
             hessian: &mut self.hessian,
+            way: None,
         };
         let folds = escape.folds_at_limit(task, &mut edge);
         if !(folds || escape.is_active) || !escape.solve(task, &mut edge, folds) {

@@ -6,7 +6,9 @@ use super::super::approach;
 use super::super::edge::Edge;
 use super::super::escape::FOLD;
 use super::super::limits::{JointState, acceleration_of};
+use super::super::nearest_pose::Surroundings;
 use super::super::options::SecondaryNullSpace;
+use super::super::projection::TaskProjection;
 use super::super::secondary::Context;
 use super::super::stall::BrakingState;
 use super::super::step::DesiredMotion;
@@ -15,7 +17,7 @@ use crate::closure::assemble;
 use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::{Path, Problem, Saturation, brake, solve};
 use crate::error::Result;
-use crate::linalg::RowSpace;
+use crate::linalg::{RowSpace, dot};
 use crate::spatial::{Pose, Twist};
 use crate::tolerance::AT_LIMIT;
 
@@ -132,8 +134,8 @@ impl Servo {
         Ok(found.closed.then_some(found.q))
     }
 
-    /// Bounds the primary and secondary velocities.
-    pub(super) fn saturate(&mut self) -> Result<Saturation> {
+    /// Bounds the primary and secondary velocities of a step from `q`.
+    pub(super) fn saturate(&mut self, q: &[f64], target: Pose) -> Result<Saturation> {
         for i in 0..self.last.len() {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
@@ -143,12 +145,26 @@ impl Servo {
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
         let Some(coupled) = &mut self.coupled else {
+            let is_whole = self.options.projection == TaskProjection::Orthogonal;
+            let way = match &mut self.nearest_pose {
+                Some(nearest_pose) if ends_at_the_edge && is_whole => {
+                    let mut around = Surroundings {
+                        task: self.options.task,
+                        space: &mut self.space,
+                        limits: &self.limits,
+                        hessian: &mut self.hessian,
+                    };
+                    nearest_pose.way(q, target, dot(error, error), &mut around)
+                }
+                _ => None,
+            };
             let mut edge = Edge {
                 chain: &self.chain,
                 space: &self.space,
                 limits: &self.limits,
                 dt: self.options.dt,
                 hessian: &mut self.hessian,
+                way,
             };
             let (secondary, rates) = (&self.secondary, &mut self.primary);
             let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };

@@ -12,9 +12,10 @@
 //!          squares)
 //! Checked  tests/it/servo/edge.rs
 
-use super::problem::{FED_FORWARD, LEAST_DAMPING, Problem, STRAIGHT};
+use super::newton_step::NewtonStep;
+use super::problem::{FED_FORWARD, Problem, STRAIGHT};
 use crate::control::solver::active_set::{ActiveSet, Level};
-use crate::linalg::{Elimination, Matrix, RankGap, Svd, norm};
+use crate::linalg::{Matrix, dot, norm};
 
 /// Joint velocities below this share of all are roundings of zero [-].
 const ROUNDING: f64 = 1e-9;
@@ -24,8 +25,9 @@ pub(in crate::control) trait Curvature {
     /// `out = - left . dJ/dq`, symmetric, n x n, in the coordinates of the task and its unknowns.
     fn load(&mut self, left: &[f64], out: &mut Matrix);
 
-    /// The share of `rates` from which every joint can stop within `way`.
-    fn share(&self, way: &[f64], rates: &[f64]) -> f64;
+    /// The share of `rates` from which every joint can stop within `way`; `gradient` is that of the
+    /// task along the unknowns.
+    fn share(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64;
 }
 
 /// The path of a task.
@@ -41,30 +43,23 @@ pub(in crate::control) enum Path {
 #[derive(Debug, Clone)]
 pub(super) struct Curved {
     left: Vec<f64>,
-    curvature: Matrix,
-    eigen: Svd,
-    /// [J; B] with B^T B = C beside [x; 0] and [e; 0].
-    stacked: Matrix,
-    elimination: Elimination,
+    newton: NewtonStep,
     /// The same problem as n rows.
     level: Level,
     way: Vec<f64>,
     rates: Vec<f64>,
-    ordered: Vec<f64>,
+    gradient: Vec<f64>,
 }
 
 impl Curved {
     pub(super) fn new(m: usize, n: usize) -> Self {
         Self {
             left: vec![0.0; m],
-            curvature: Matrix::zeros(n, n),
-            eigen: Svd::workspace(n, n),
-            stacked: Matrix::zeros(m + n, n + 2),
-            elimination: Elimination::workspace(n),
+            newton: NewtonStep::new(m, n),
             level: Level::new(n, n),
             way: vec![0.0; n],
             rates: vec![0.0; n],
-            ordered: vec![0.0; n],
+            gradient: vec![0.0; n],
         }
     }
 
@@ -76,54 +71,28 @@ impl Curved {
         p: &Problem<'_>,
         curvature: &mut dyn Curvature,
     ) {
-        let (m, n) = (p.j.rows(), p.j.cols());
         set.least_residual(task, STRAIGHT);
         self.left.copy_from_slice(task.left(set.point()));
         let (size, error) = (norm(&self.left), norm(p.error));
         let scale = if size > 0.0 { (1.0 / p.gain).min(error / size) } else { 0.0 };
         self.left.iter_mut().for_each(|x| *x *= scale);
-        curvature.load(&self.left, &mut self.curvature);
-        // Shifted: then singular values are eigenvalues.
-        let shift = self.curvature.frobenius_norm();
-        for i in 0..n {
-            self.curvature[(i, i)] += shift;
-        }
-        self.eigen.decompose_warm(&self.curvature);
-        self.stacked.as_mut_slice().fill(0.0);
-        for i in 0..n {
-            let root = ((self.eigen.value(i) - shift).max(0.0) + LEAST_DAMPING).sqrt();
-            for (j, v) in self.eigen.v(i).iter().enumerate() {
-                self.stacked[(m + i, j)] = root * v;
-            }
-        }
-        for j in 0..n {
-            self.stacked.column_mut(j)[..m].copy_from_slice(p.j.column(j));
-        }
-        self.stacked.column_mut(n)[..m].copy_from_slice(&task.target);
-        self.stacked.column_mut(n + 1)[..m].copy_from_slice(p.error);
-        // Regular: C has at least the least damping.
-        self.elimination.eliminate(&mut self.stacked, n, RankGap { zero: 0.0, regular: 0.0 });
-        for (column, solution) in [(n, &mut self.rates), (n + 1, &mut self.way)] {
-            self.ordered.copy_from_slice(&self.stacked.column(column)[..n]);
-            self.elimination.solve(&self.stacked, &mut self.ordered);
-            for (x, &j) in self.ordered.iter().zip(self.elimination.order()) {
-                solution[j] = *x;
-            }
-        }
+        curvature.load(&self.left, &mut self.newton.curvature);
+        self.newton.decompose(p.j, [&task.target, p.error]);
+        self.newton.solution_into(0, &mut self.rates);
+        self.newton.solution_into(1, &mut self.way);
         // Joints that take no part in the task move by rounding only, and have no way.
         let rounding = ROUNDING * norm(&self.rates);
         self.rates.iter_mut().filter(|rate| rate.abs() <= rounding).for_each(|rate| *rate = 0.0);
         let share = if norm(&task.target) > FED_FORWARD * p.gain * error {
             1.0
         } else {
-            curvature.share(&self.way, &self.rates)
+            for (j, g) in self.gradient.iter_mut().enumerate() {
+                *g = dot(p.j.column(j), &task.target);
+            }
+            curvature.share(&self.way, &self.rates, &self.gradient)
         };
-        for (k, &j) in self.elimination.order().iter().enumerate() {
-            let column = self.level.rows.column_mut(j);
-            column.fill(0.0);
-            column[..=k].copy_from_slice(&self.stacked.column(k)[..=k]);
-        }
-        for (b, x) in self.level.target.iter_mut().zip(self.stacked.column(n)) {
+        self.newton.rows_into(&mut self.level.rows);
+        for (b, x) in self.level.target.iter_mut().zip(self.newton.right_side(0)) {
             *b = share * x;
         }
         set.start(p.last);

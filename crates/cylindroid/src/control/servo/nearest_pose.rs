@@ -1,0 +1,160 @@
+//! The configuration of the nearest pose to a target beyond reach: there the joints must stop.
+//!
+//! Formula  q <- q + (J^T J + P(C))^-1 J^T e within the limits, e the error at q, C = - e . dJ/dq
+//!          (`edge.rs`), P the positive part; halved while |e| grows. A few steps in each step of the
+//!          servo, from the result of the last one
+//! Shapes   J: m x n, e: m
+//! Units    scaled as in `task_space.rs`
+//! Valid    trees; a local minimum of |e|, that to which the present configuration descends
+//! Why so   the curvature at the present configuration gives the way that is left only near its end.
+//!          Joints with small acceleration limits must brake from far away
+//! Checked  tests/it/servo/edge.rs
+
+use super::edge::Edge;
+use super::task_space::TaskSpace;
+use crate::control::solver::saturation::{Curvature, NewtonStep};
+use crate::kinematics::Chain;
+use crate::linalg::{Matrix, dot, norm};
+use crate::model::Limits;
+use crate::scalar::clamp;
+use crate::spatial::Pose;
+use crate::task::Task;
+
+/// Newton steps in a step of the servo.
+const STEPS: usize = 3;
+/// Largest change of a joint in one of them (scaled) [rad, or lengths].
+const LONGEST: f64 = 0.4;
+/// Halvings of a step.
+const HALVINGS: usize = 6;
+/// A step below this share of the way that is left has arrived [-].
+const ARRIVED: f64 = 0.02;
+/// A way below this is the end of the motion (scaled) [rad, or lengths].
+const SHORT: f64 = 1e-6;
+
+/// The task, its limits, and memory of the servo.
+pub(super) struct Surroundings<'a> {
+    pub(super) task: Task,
+    pub(super) space: &'a mut TaskSpace,
+    pub(super) limits: &'a [Limits],
+    pub(super) hessian: &'a mut [Matrix],
+}
+
+/// The configuration, and workspace.
+#[derive(Debug, Clone)]
+pub(super) struct NearestPose {
+    chain: Chain,
+    /// All coordinates; empty before the first step.
+    q: Vec<f64>,
+    start: Vec<f64>,
+    is_known: bool,
+    jacobian: Matrix,
+    error: Vec<f64>,
+    newton: NewtonStep,
+    step: Vec<f64>,
+    /// From the present configuration, scaled.
+    way: Vec<f64>,
+}
+
+impl NearestPose {
+    pub(super) fn new(chain: &Chain, coordinates: usize, m: usize) -> Self {
+        let n = chain.n();
+        Self {
+            chain: chain.clone(),
+            q: vec![0.0; coordinates],
+            start: vec![0.0; coordinates],
+            is_known: false,
+            jacobian: Matrix::zeros(m, n),
+            error: vec![0.0; m],
+            newton: NewtonStep::new(m, n),
+            step: vec![0.0; n],
+            way: vec![0.0; n],
+        }
+    }
+
+    /// Forgets the last result.
+    pub(super) const fn reset(&mut self) {
+        self.is_known = false;
+    }
+
+    /// Moves on towards the nearest pose from the present configuration `q`, whose squared error is
+    /// `present`; the way there (scaled) once it is found.
+    pub(super) fn way(
+        &mut self,
+        q: &[f64],
+        target: Pose,
+        present: f64,
+        around: &mut Surroundings<'_>,
+    ) -> Option<&[f64]> {
+        let mut far = if self.is_known { self.load(target, around) } else { f64::INFINITY };
+        // The servo has found a better one.
+        if !(far <= present) {
+            self.q.copy_from_slice(q);
+            far = self.load(target, around);
+        }
+        self.is_known = true;
+        let mut moved = f64::INFINITY;
+        for _ in 0..STEPS {
+            if moved <= SHORT {
+                break;
+            }
+            moved = self.advance(target, &mut far, around);
+        }
+        for (i, (way, &c)) in self.way.iter_mut().zip(self.chain.coordinates()).enumerate() {
+            *way = around.space.scaled_rate(i, self.q[c] - q[c]);
+        }
+        (moved <= SHORT.max(ARRIVED * norm(&self.way))).then_some(&self.way)
+    }
+
+    /// One step; the largest change of a joint.
+    fn advance(&mut self, target: Pose, far: &mut f64, around: &mut Surroundings<'_>) -> f64 {
+        around.space.load(&self.chain, &mut self.jacobian);
+        let mut edge = Edge {
+            chain: &self.chain,
+            space: around.space,
+            limits: around.limits,
+            dt: 0.0,
+            hessian: around.hessian,
+            way: None,
+        };
+        edge.load(&self.error, &mut self.newton.curvature);
+        // A joint at a limit that would reduce the error beyond it rests.
+        for (i, (limits, &c)) in around.limits.iter().zip(self.chain.coordinates()).enumerate() {
+            let pull = dot(self.jacobian.column(i), &self.error);
+            let q = self.q[c];
+            if (pull > 0.0 && q >= limits.upper) || (pull < 0.0 && q <= limits.lower) {
+                self.jacobian.column_mut(i).fill(0.0);
+                for j in 0..self.chain.n() {
+                    self.newton.curvature[(i, j)] = 0.0;
+                    self.newton.curvature[(j, i)] = 0.0;
+                }
+            }
+        }
+        self.newton.decompose(&self.jacobian, [&self.error, &self.error]);
+        self.newton.solution_into(0, &mut self.step);
+        let most = self.step.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let mut share = if most > LONGEST { LONGEST / most } else { 1.0 };
+        self.start.copy_from_slice(&self.q);
+        for _ in 0..HALVINGS {
+            let moves = self.step.iter().zip(&around.space.columns).zip(around.limits);
+            for (((x, column), limits), &c) in moves.zip(self.chain.coordinates()) {
+                self.q[c] = clamp(self.start[c] + share * x * column, limits.lower, limits.upper);
+            }
+            let then = self.load(target, around);
+            if then <= *far {
+                *far = then;
+                return share * most;
+            }
+            share *= 0.5;
+        }
+        self.q.copy_from_slice(&self.start);
+        *far = self.load(target, around);
+        0.0
+    }
+
+    /// Evaluates the error at the configuration; its square.
+    fn load(&mut self, target: Pose, around: &Surroundings<'_>) -> f64 {
+        let pose = self.chain.set(&self.q);
+        around.space.scale(around.task.seen(pose, pose.error_to(target)), &mut self.error);
+        dot(&self.error, &self.error)
+    }
+}
