@@ -210,7 +210,10 @@ proptest! {
         let (fast, slow) = (law.at(share * law.duration()), slow.at(share * slow.duration()));
         let peaks = law.extrema();
         prop_assert!((slow.position - fast.position).abs() <= 1e-13 * h.abs());
-        prop_assert!((slow.velocity * k - fast.velocity).abs() <= 1e-12 * peaks.velocity);
+        // Both times are rounded to their resolution, in which the velocity changes.
+        let clock = 4.0 * f64::EPSILON * law.duration() * peaks.acceleration;
+        let apart = (slow.velocity * k - fast.velocity).abs();
+        prop_assert!(apart <= 1e-12 * peaks.velocity + clock, "{apart}");
     }
 }
 
