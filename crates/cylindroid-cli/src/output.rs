@@ -122,11 +122,13 @@ pub(crate) fn wrap(text: &str, width: usize) -> Vec<String> {
 
 /// A screw in the world frame.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Screw"))]
 pub(crate) struct ScrewJson {
     /// Point of the axis closest to the origin; null for a translation.
     point: Option<[f64; 3]>,
     direction: [f64; 3],
     /// [m/rad]; null for a translation.
+    #[cfg_attr(test, ts(type = "number | null"))]
     pitch: f64,
     /// [rad/s]; for a translation [m/s].
     amplitude: f64,
@@ -192,6 +194,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The joint followed by a mimic joint, in JSON.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Mimic"))]
 pub(crate) struct MimicJson<'a> {
     joint: &'a str,
     multiplier: f64,

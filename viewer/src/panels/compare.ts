@@ -108,7 +108,7 @@ export class Compare {
     const chosen = scene.methods.filter(({ name }) => name === this.first.value || name === this.second.value);
     this.pitchRow.hidden = !chosen.some((method) => method.pitch);
     const asked = {
-      type: "compare" as const, methods: [this.first.value, this.second.value], point: this.point ?? [0, 0, 0] as Vec3,
+      type: "compare" as const, methods: [this.first.value, this.second.value] as [string, string], point: this.point ?? [0, 0, 0] as Vec3,
       h: Number.isFinite(h) && !this.pitchRow.hidden ? h : null, twist: null,
     };
     const question = JSON.stringify([asked, state.q, state.target]);

@@ -23,6 +23,7 @@ pub(super) struct Bodies {
 
 /// The distances in a state.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Distances"))]
 pub(super) struct DistancesJson<'a> {
     margin: f64,
     shapes: usize,
@@ -32,6 +33,7 @@ pub(super) struct DistancesJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Near"))]
 struct NearJson<'a> {
     a: &'a str,
     b: &'a str,

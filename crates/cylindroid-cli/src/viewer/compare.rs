@@ -15,8 +15,10 @@ use super::session::Session;
 const DEFAULT_TWIST: Twist = Twist { linear: Vec3::new(0.1, 0.0, 0.0), angular: Vec3::ZERO };
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "compare")]
-struct CompareJson<'a> {
+pub(super) struct CompareJson<'a> {
+    #[cfg_attr(test, ts(type = "string | number | null"))]
     reply_to: Option<&'a Value>,
     twist: [f64; 6],
     tool_point: [f64; 3],
@@ -26,6 +28,7 @@ struct CompareJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ComparedMethod"))]
 struct ResultJson<'a> {
     method: &'a str,
     h: Option<f64>,

@@ -40,12 +40,14 @@ pub enum DrawnShape {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "drawings")]
-struct DrawingsJson<'a> {
+pub(super) struct DrawingsJson<'a> {
     drawings: Vec<DrawingJson<'a>>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Drawing"))]
 struct DrawingJson<'a> {
     name: &'a str,
     #[serde(flatten)]
@@ -54,6 +56,7 @@ struct DrawingJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "DrawnShape"))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum ShapeJson<'a> {
     Frame { pose: PoseJson, size: Option<f64> },

@@ -1,7 +1,9 @@
 //! The message `states`: poses and measures at other configurations than the session's, for motions
 //! that are played back.
 
+use serde::Serialize;
 use serde_json::Value;
+use serde_json::value::{RawValue, to_raw_value};
 
 use super::client_view::ClientView;
 use super::json::text;
@@ -12,6 +14,16 @@ use super::session::Session;
 
 /// Configurations of one message: some take a millisecond.
 const MOST: usize = 64;
+
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(tag = "type", rename = "states")]
+pub(super) struct StatesJson<'a> {
+    #[cfg_attr(test, ts(type = "string | number | null"))]
+    reply_to: Option<&'a Value>,
+    #[cfg_attr(test, ts(type = "Posture[]"))]
+    states: Vec<Box<RawValue>>,
+}
 
 /// The answer to `states`; the session stays where it is.
 pub(super) fn states(
@@ -32,10 +44,11 @@ pub(super) fn states(
     for (i, q) in asked.q.iter().enumerate() {
         let found = session.elsewhere(q, |there| {
             let measures = Measures::of(there);
-            Ok(text(&posture(there, measures.as_ref(), overlays, margin)?))
+            let posture = posture(there, measures.as_ref(), overlays, margin)?;
+            // Names, numbers and lists can be written.
+            Ok(to_raw_value(&posture).unwrap_or_default())
         });
         states.push(found.map_err(|error| Complaint::of(&format!("states.q[{i}]"), &error))?);
     }
-    let (id, states) = (text(&id), states.join(","));
-    Ok(format!(r#"{{"type":"states","reply_to":{id},"states":[{states}]}}"#))
+    Ok(text(&StatesJson { reply_to: id, states }))
 }

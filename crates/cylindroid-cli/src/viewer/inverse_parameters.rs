@@ -29,6 +29,7 @@ pub(super) fn hyperbolic() -> impl Iterator<Item = NamedInverse> {
 
 /// The inverse that the client chose, with the values of its parameters.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ChosenMethod"))]
 pub(super) struct Chosen {
     name: String,
     parameters: BTreeMap<&'static str, f64>,

@@ -3,8 +3,9 @@
 use cylindroid::Pose;
 use serde::Serialize;
 
-/// A pose of docs/viewer.md.
+/// A pose: `world_from_...`, unless it is said to be in a link.
 #[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Pose"))]
 pub(super) struct PoseJson {
     position: [f64; 3],
     /// w, x, y, z.

@@ -14,13 +14,17 @@ pub(super) const LARGEST: usize = 64 * 1024;
 
 /// A message with the id that is returned to its sender.
 #[derive(Debug)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ToServer"))]
 pub(super) struct Request {
+    #[cfg_attr(test, ts(optional, type = "string | number"))]
     pub(super) id: Option<Value>,
+    #[cfg_attr(test, ts(flatten))]
     pub(super) message: Message,
 }
 
 /// Described in docs/viewer.md.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(tag = "type", rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Message {
     Joint(Joint),
@@ -29,9 +33,9 @@ pub(super) enum Message {
     Twist(TwistCommand),
     Frame(Name),
     Task(Name),
-    Play(Nothing),
-    Pause(Nothing),
-    Reset(Nothing),
+    Play(#[cfg_attr(test, ts(skip))] Nothing),
+    Pause(#[cfg_attr(test, ts(skip))] Nothing),
+    Reset(#[cfg_attr(test, ts(skip))] Nothing),
     NullSpace(NullSpace),
     Actuated(Names),
     Method(MethodChoice),
@@ -96,18 +100,21 @@ const TYPES: [&str; 23] = [
 pub(super) struct Nothing {}
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "NameMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Name {
     pub(super) name: String,
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "NamesMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Names {
     pub(super) names: Vec<String>,
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "JointMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Joint {
     pub(super) name: String,
@@ -115,12 +122,14 @@ pub(super) struct Joint {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ConfigurationMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Configuration {
     pub(super) q: Vec<f64>,
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "TargetMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct TargetPose {
     pub(super) position: [f64; 3],
@@ -130,6 +139,7 @@ pub(super) struct TargetPose {
 
 /// World axes, at the tool.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "TwistMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct TwistCommand {
     pub(super) linear: [f64; 3],
@@ -137,6 +147,7 @@ pub(super) struct TwistCommand {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "NullSpaceMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct NullSpace {
     pub(super) rate: f64,
@@ -145,6 +156,7 @@ pub(super) struct NullSpace {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "MethodMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct MethodChoice {
     pub(super) name: String,
@@ -157,6 +169,7 @@ pub(super) struct MethodChoice {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "CompareMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Compare {
     pub(super) methods: [String; 2],
@@ -168,12 +181,14 @@ pub(super) struct Compare {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "DriveMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Drive {
     pub(super) on: bool,
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "StatesMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct States {
     pub(super) q: Vec<Vec<f64>>,
@@ -183,6 +198,7 @@ pub(super) struct States {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SeenMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Seen {
     pub(super) seq: u64,
@@ -205,8 +221,10 @@ impl TargetPose {
 
 /// An error in a message.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "error")]
 pub(super) struct Complaint {
+    #[cfg_attr(test, ts(type = "string | number | null"))]
     pub(super) reply_to: Option<Value>,
     pub(super) culprit: Box<str>,
     /// Message and field.

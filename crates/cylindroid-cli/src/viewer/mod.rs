@@ -9,7 +9,8 @@
 //! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it, `opened` those of further
 //! models;
 //! `socket` talks to one client; `safety` protects `server`, which listens; `embedded` is all of it
-//! inside another program, with its `drawings` and `drags`. All mathematics is in the library.
+//! inside another program, with its `drawings` and `drags`. `typescript` writes the messages as types
+//! of the page. All mathematics is in the library.
 
 mod assets;
 mod avoidance;
@@ -42,6 +43,8 @@ mod shared_session;
 mod snapshot;
 mod socket;
 mod start;
+#[cfg(test)]
+mod typescript;
 
 pub(crate) use self::assets::page_is_built;
 pub(crate) use self::bodies::check_count;

@@ -5,6 +5,7 @@ use cylindroid::model::Geometry;
 use serde::Deserialize;
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "AddObstacleMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct AddObstacle {
     pub(super) name: String,
@@ -16,6 +17,7 @@ pub(super) struct AddObstacle {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "MoveObstacleMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct MoveObstacle {
     pub(super) name: String,
@@ -24,13 +26,15 @@ pub(super) struct MoveObstacle {
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "DistancesMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct Distances {
-    /// `None`: no distances.
+    /// Without it no distances are computed.
     pub(super) margin: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "AvoidCollisionsMessage"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct AvoidCollisions {
     pub(super) on: bool,
@@ -40,6 +44,11 @@ pub(super) struct AvoidCollisions {
 
 /// The shapes of obstacles. Meshes are files, which a client cannot name.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(
+    test,
+    derive(ts_rs::TS),
+    ts(rename = "SimpleShape", tag = "kind", rename_all = "snake_case")
+)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(super) enum Shape {
     Sphere { radius: f64 },

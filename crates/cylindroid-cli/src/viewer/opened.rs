@@ -47,6 +47,7 @@ struct Model {
 
 /// A model that is open.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "OpenedModel"))]
 pub(super) struct Known {
     id: String,
     name: String,
@@ -54,6 +55,7 @@ pub(super) struct Known {
 
 /// A model of the catalogue.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "OfferedModel"))]
 pub(super) struct Offer {
     name: &'static str,
     description: String,
@@ -75,6 +77,7 @@ type Files<'a> = Vec<(PathBuf, &'a [u8])>;
 
 /// Why a model is not opened.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(super) struct Refusal {
     message: String,
     file: Option<String>,

@@ -23,11 +23,12 @@ const RULINGS: usize = 72;
 
 /// An overlay, or the reason why it is empty.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(untagged)]
 pub(super) enum Shown {
-    Empty { empty: String },
+    Empty(EmptyJson),
     Ellipsoid(EllipsoidJson),
-    Axes { axes: Vec<AxisJson> },
+    Axes(AxesJson),
     System(SystemJson),
     Reciprocal(ReciprocalJson),
     Cylindroid(CylindroidJson),
@@ -36,10 +37,23 @@ pub(super) enum Shown {
 
 /// An empty overlay with the reason.
 fn empty(why: impl Into<String>) -> Shown {
-    Shown::Empty { empty: why.into() }
+    Shown::Empty(EmptyJson { empty: why.into() })
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Empty"))]
+pub(super) struct EmptyJson {
+    empty: String,
+}
+
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "JointAxes"))]
+pub(super) struct AxesJson {
+    axes: Vec<AxisJson>,
+}
+
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "AxisScrew"))]
 pub(super) struct AxisJson {
     name: String,
     screw: ScrewJson,
@@ -48,17 +62,20 @@ pub(super) struct AxisJson {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PrincipalScrews"))]
 pub(super) struct SystemJson {
     order: usize,
     gibson_hunt: &'static str,
     meaning: &'static str,
     ambiguous: bool,
+    #[cfg_attr(test, ts(type = "(number | null)[]"))]
     principal_pitches: Vec<f64>,
     screws: Vec<ScrewJson>,
     canonical: PoseJson,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Reciprocal"))]
 pub(super) struct ReciprocalJson {
     order: usize,
     gibson_hunt: &'static str,
@@ -67,18 +84,24 @@ pub(super) struct ReciprocalJson {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Cylindroid"))]
 pub(super) struct CylindroidJson {
+    #[cfg_attr(test, ts(type = "\"system\" | \"reciprocal\""))]
     of: &'static str,
+    #[cfg_attr(test, ts(type = "[number | null, number | null]"))]
     pitches: [f64; 2],
     rulings: Vec<RulingJson>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Ruling"))]
 struct RulingJson {
     from: [f64; 3],
     to: [f64; 3],
+    #[cfg_attr(test, ts(type = "number | null"))]
     pitch: f64,
 }
+
 /// The overlay for the current state.
 pub(super) fn shown(overlay: Overlay, session: &Session, measures: Option<&Measures>) -> Shown {
     let drawn = |kind| {
@@ -90,7 +113,7 @@ pub(super) fn shown(overlay: Overlay, session: &Session, measures: Option<&Measu
         Overlay::AngularVelocity => drawn(Ellipsoid::AngularVelocity),
         Overlay::ActiveForce => drawn(Ellipsoid::ActiveForce),
         Overlay::PassiveForce => drawn(Ellipsoid::PassiveForce),
-        Overlay::JointAxes => Ok(Shown::Axes { axes: axes(session) }),
+        Overlay::JointAxes => Ok(Shown::Axes(AxesJson { axes: axes(session) })),
         Overlay::PrincipalScrews => session.screw_system().map(|s| principal(&s)),
         Overlay::Reciprocal => session.screw_system().map(|s| reciprocal(&s)),
         Overlay::Cylindroid => session.screw_system().map(|s| cylindroid(&s)),

@@ -14,6 +14,7 @@ use super::overlays::{Shown, shown};
 use super::session::Session;
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Posture"))]
 pub(super) struct PostureJson<'a> {
     q: &'a [f64],
     links: Vec<PoseJson>,
@@ -23,28 +24,33 @@ pub(super) struct PostureJson<'a> {
     loops: Vec<LoopJson>,
     contacts: Vec<ContactJson>,
     closure_error: Option<ClosureErrorJson>,
+    #[cfg_attr(test, ts(type = "Partial<OverlayData>"))]
     overlays: BTreeMap<&'static str, Shown>,
     obstacles: Vec<PoseJson>,
     distances: Option<DistancesJson<'a>>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Singular"))]
 struct SingularJson {
     values: Vec<f64>,
     threshold: f64,
     rank: usize,
+    #[cfg_attr(test, ts(type = "number | null"))]
     gap: f64,
     ratio: f64,
     length: f64,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LoopEnds"))]
 struct LoopJson {
     a: [f64; 3],
     b: [f64; 3],
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ContactPoints"))]
 struct ContactJson {
     point: [f64; 3],
     normal: [f64; 3],
@@ -52,6 +58,7 @@ struct ContactJson {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ClosureError"))]
 struct ClosureErrorJson {
     distance: f64,
     angle: f64,

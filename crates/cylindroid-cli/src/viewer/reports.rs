@@ -25,10 +25,14 @@ pub(super) struct Report {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "report")]
-struct ReportJson<'a> {
+pub(super) struct ReportJson<'a> {
+    #[cfg_attr(test, ts(type = "string | number | null"))]
     reply_to: Option<&'a Value>,
+    #[cfg_attr(test, ts(type = "ReportName"))]
     name: &'static str,
+    #[cfg_attr(test, ts(type = "Record<string, unknown>"))]
     report: Box<RawValue>,
 }
 

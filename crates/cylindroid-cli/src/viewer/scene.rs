@@ -14,11 +14,13 @@ use super::reaching::is_adjustable;
 use super::session::Session;
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "scene")]
 pub(super) struct Scene<'a> {
     name: &'a str,
     format: &'a str,
     closed: bool,
+    #[cfg_attr(test, ts(type = "2 | 3"))]
     dimension: usize,
     reach: f64,
     links: Vec<LinkJson<'a>>,
@@ -35,6 +37,7 @@ pub(super) struct Scene<'a> {
     method: &'a Chosen,
     methods: Vec<ChoiceJson>,
     overlays: Vec<OverlayJson>,
+    #[cfg_attr(test, ts(type = "ReportName[]"))]
     reports: [&'static str; 4],
     home: &'a [f64],
     obstacles: Vec<ObstacleJson<'a>>,
@@ -43,6 +46,7 @@ pub(super) struct Scene<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Obstacle"))]
 struct ObstacleJson<'a> {
     name: &'a str,
     #[serde(flatten)]
@@ -50,12 +54,14 @@ struct ObstacleJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Avoidance"))]
 struct AvoidanceJson {
     gap: f64,
     margin: f64,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneLink"))]
 struct LinkJson<'a> {
     name: &'a str,
     visuals: Vec<VisualJson<'a>>,
@@ -64,6 +70,7 @@ struct LinkJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Visual"))]
 struct VisualJson<'a> {
     #[serde(flatten)]
     shape: ShapeJson<'a>,
@@ -72,6 +79,7 @@ struct VisualJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "CollisionShape"))]
 struct CollisionJson<'a> {
     #[serde(flatten)]
     shape: ShapeJson<'a>,
@@ -79,8 +87,9 @@ struct CollisionJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Shape"))]
 #[serde(tag = "kind", rename_all = "snake_case")]
-enum ShapeJson<'a> {
+pub(super) enum ShapeJson<'a> {
     Box {
         size: [f64; 3],
     },
@@ -101,6 +110,7 @@ enum ShapeJson<'a> {
     HalfSpace,
     Mesh {
         url: Option<String>,
+        #[cfg_attr(test, ts(type = "\"stl\" | \"dae\" | \"obj\" | null"))]
         format: Option<&'static str>,
         scale: [f64; 3],
         uri: &'a str,
@@ -110,15 +120,29 @@ enum ShapeJson<'a> {
 
 /// A point of a link, in its frame.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Anchor"))]
 struct AnchorJson<'a> {
     name: &'a str,
-    kind: &'static str,
+    kind: AnchorKind,
     position: [f64; 3],
 }
 
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum AnchorKind {
+    Joint,
+    Child,
+    Loop,
+    Contact,
+    Frame,
+}
+
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneJoint"))]
 struct JointJson<'a> {
     name: &'a str,
+    #[cfg_attr(test, ts(type = "JointKind"))]
     kind: &'static str,
     parent: usize,
     child: usize,
@@ -130,32 +154,41 @@ struct JointJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Coordinate"))]
 struct CoordinateJson<'a> {
     name: &'a str,
     joint: usize,
+    #[cfg_attr(test, ts(type = "\"rad\" | \"m\""))]
     unit: &'static str,
+    #[cfg_attr(test, ts(type = "number | null"))]
     lower: f64,
+    #[cfg_attr(test, ts(type = "number | null"))]
     upper: f64,
+    #[cfg_attr(test, ts(type = "number | null"))]
     velocity: f64,
     actuated: bool,
     adjustable: bool,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneFrame"))]
 struct FrameJson<'a> {
     name: &'a str,
     link: usize,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneTask"))]
 struct TaskJson<'a> {
     name: &'a str,
     components: Vec<&'static str>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneLoop"))]
 struct LoopJson<'a> {
     name: &'a str,
+    #[cfg_attr(test, ts(type = "JointKind"))]
     kind: &'static str,
     a: usize,
     b: usize,
@@ -164,6 +197,7 @@ struct LoopJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneContact"))]
 struct ContactJson<'a> {
     name: &'a str,
     kind: &'static str,
@@ -173,6 +207,7 @@ struct ContactJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SceneObject"))]
 struct ObjectJson<'a> {
     link: usize,
     name: &'a str,
@@ -180,13 +215,16 @@ struct ObjectJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Actuator"))]
 struct ActuatorJson<'a> {
     name: &'a str,
+    #[cfg_attr(test, ts(type = "JointKind"))]
     kind: &'static str,
     actuated: bool,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Method"))]
 struct ChoiceJson {
     name: &'static str,
     description: &'static str,
@@ -196,6 +234,7 @@ struct ChoiceJson {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Parameter"))]
 struct ParameterJson {
     name: &'static str,
     unit: &'static str,
@@ -204,7 +243,9 @@ struct ParameterJson {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "OverlayInfo"))]
 struct OverlayJson {
+    #[cfg_attr(test, ts(type = "OverlayName"))]
     name: &'static str,
     title: &'static str,
     unit: &'static str,
@@ -335,20 +376,20 @@ fn links(session: &Session) -> Vec<LinkJson<'_>> {
         all[link].anchors.push(AnchorJson { name, kind, position: pose.translation.to_array() });
     };
     for j in mechanism.joints() {
-        add(j.child, &j.name, "joint", j.joint_from_child.inverse());
-        add(j.parent, &j.name, "child", j.parent_from_joint);
+        add(j.child, &j.name, AnchorKind::Joint, j.joint_from_child.inverse());
+        add(j.parent, &j.name, AnchorKind::Child, j.parent_from_joint);
     }
     for l in mechanism.loops() {
-        add(l.a, &l.name, "loop", l.link_a_from_joint);
-        add(l.b, &l.name, "loop", l.link_b_from_joint);
+        add(l.a, &l.name, AnchorKind::Loop, l.link_a_from_joint);
+        add(l.b, &l.name, AnchorKind::Loop, l.link_b_from_joint);
     }
     for c in mechanism.contacts() {
-        add(c.a, &c.name, "contact", c.link_a_from_contact);
-        add(c.b, &c.name, "contact", c.link_b_from_contact);
+        add(c.a, &c.name, AnchorKind::Contact, c.link_a_from_contact);
+        add(c.b, &c.name, AnchorKind::Contact, c.link_b_from_contact);
     }
     let controlled = mechanism.frame_of(session.options().end_effector.frame);
     let tool = controlled.link_from_frame * session.options().end_effector.frame_from_tool;
-    add(controlled.link, &controlled.name, "frame", tool);
+    add(controlled.link, &controlled.name, AnchorKind::Frame, tool);
     all
 }
 

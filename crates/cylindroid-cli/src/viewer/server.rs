@@ -175,7 +175,8 @@ async fn session(State(shared): State<Shared>, uri: Uri, upgrade: WebSocketUpgra
 const JSON: [(header::HeaderName, &str); 1] = [(header::CONTENT_TYPE, "application/json")];
 
 #[derive(Debug, Serialize)]
-struct ModelsJson<'a> {
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Models"))]
+pub(super) struct ModelsJson<'a> {
     name: &'a str,
     catalogue: Vec<Offer>,
     opened: Vec<Known>,

@@ -83,12 +83,23 @@ pub(super) struct Membership {
 
 /// The message `session`.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "session")]
-struct AboutJson<'a> {
+pub(super) struct AboutJson<'a> {
     name: Option<&'a str>,
     clients: usize,
-    driver: &'static str,
+    driver: Driver,
     program: bool,
+}
+
+/// Who drives, to one client.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum Driver {
+    You,
+    Another,
+    Nobody,
 }
 
 impl SharedSession {
@@ -161,9 +172,9 @@ impl SharedSession {
         }
         for (id, client) in &inner.clients {
             let driver = match inner.driver {
-                None => "nobody",
-                Some(driver) if driver == *id => "you",
-                Some(_) => "another",
+                None => Driver::Nobody,
+                Some(driver) if driver == *id => Driver::You,
+                Some(_) => Driver::Another,
             };
             let about = AboutJson {
                 name: self.name.as_deref(),

@@ -13,10 +13,12 @@ use super::session::Session;
 use crate::commands::move_to::sentences::cause;
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename = "state")]
-struct StateJson<'a> {
+pub(super) struct StateJson<'a> {
     seq: u64,
     time: f64,
+    #[cfg_attr(test, ts(type = "string | number | null"))]
     ack: Option<&'a Value>,
     playing: bool,
     target: PoseJson,
@@ -27,14 +29,16 @@ struct StateJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "PoseError"))]
 struct ErrorJson {
     position: f64,
     orientation: f64,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Servo"))]
 struct ServoJson {
-    status: &'static str,
+    status: ServoStatus,
     reason: Option<&'static str>,
     sentence: String,
     limits: Vec<LimitJson>,
@@ -45,7 +49,19 @@ struct ServoJson {
     twist: Option<[f64; 6]>,
 }
 
+#[derive(Debug, Clone, Copy, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum ServoStatus {
+    Moving,
+    Reached,
+    Stalled,
+    Paused,
+    Unavailable,
+}
+
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "ActiveLimit"))]
 struct LimitJson {
     coordinate: usize,
     kind: &'static str,
@@ -100,14 +116,14 @@ fn servo(session: &Session) -> ServoJson {
         twist: session.twist().map(Twist::to_array),
     };
     if let Some(fault) = session.fault() {
-        return told("unavailable", None, fault.to_string());
+        return told(ServoStatus::Unavailable, None, fault.to_string());
     }
     if !session.is_playing() {
         let why = match session.is_followed() {
             true => "A program sets the configuration.",
             false => "The servo is paused.",
         };
-        return told("paused", None, why.to_owned());
+        return told(ServoStatus::Paused, None, why.to_owned());
     }
     let moving = match session.twist() {
         Some(Twist::ZERO) => "Braking.",
@@ -116,29 +132,31 @@ fn servo(session: &Session) -> ServoJson {
     };
     let Some(last) = last else {
         return match session.is_resting() {
-            true => told("reached", None, "The target is at the tool.".to_owned()),
-            false => told("moving", None, moving.to_owned()),
+            true => told(ServoStatus::Reached, None, "The target is at the tool.".to_owned()),
+            false => told(ServoStatus::Moving, None, moving.to_owned()),
         };
     };
     match (last.status, &last.pair, &last.stall) {
-        (Status::Reached, ..) => told("reached", None, "The target is reached.".to_owned()),
+        (Status::Reached, ..) => {
+            told(ServoStatus::Reached, None, "The target is reached.".to_owned())
+        }
         (Status::Stalled, Some([a, b]), _) => {
             let why = format!("{a} and {b} must not come closer: their distance stops the motion.");
-            told("stalled", Some("distance"), why)
+            told(ServoStatus::Stalled, Some("distance"), why)
         }
         (Status::Stalled, None, Some(stall)) => {
             let (mechanism, q) = (session.mechanism(), session.state().q());
             let why = cause(mechanism, session.options().task, q, stall);
-            told("stalled", Some(stall.name()), why)
+            told(ServoStatus::Stalled, Some(stall.name()), why)
         }
         (_, Some([a, b]), _) => {
             let why = format!(
                 "{}; the distance of {a} and {b} slows the motion.",
                 moving.trim_end_matches('.')
             );
-            told("moving", None, why)
+            told(ServoStatus::Moving, None, why)
         }
-        _ => told("moving", None, moving.to_owned()),
+        _ => told(ServoStatus::Moving, None, moving.to_owned()),
     }
 }
 

@@ -16,6 +16,7 @@ pub(super) enum Ellipsoid {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Ellipsoid"))]
 pub(in super::super) struct EllipsoidJson {
     center: [f64; 3],
     axes: Vec<SemiAxisJson>,
@@ -26,6 +27,7 @@ pub(in super::super) struct EllipsoidJson {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "SemiAxis"))]
 struct SemiAxisJson {
     vector: [f64; 3],
     size: f64,

@@ -14,6 +14,7 @@ use crate::output::{ScrewJson, number};
 const SHARE: f64 = 0.3;
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "LostDirection"))]
 pub(in super::super) struct LostJson {
     ratio: f64,
     lost: bool,
