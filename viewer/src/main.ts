@@ -54,6 +54,8 @@ function start(): void {
     changed: (recording, states) => bar.recorded(recording, states),
     wanted: () => ({ overlays: overlays.names(), distances: distances.panel.isOpen() }),
     size: () => size,
+    look: () => ({ camera: stage.place(), orthographic: stage.isOrthographic, overlays: [...overlays.on] }),
+    picture: () => stage.png(),
   });
   let problemsTold = "";
   const robot = new Robot({

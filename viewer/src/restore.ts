@@ -37,8 +37,7 @@ export class Restore {
   now(): Snapshot | null {
     const { scene, state } = this.shown();
     if (!scene || !state) return null;
-    const { camera, orbit } = this.stage;
-    return snapshot(scene, state, this.overlays.on, [...camera.position.toArray(), ...orbit.target.toArray()], this.stage.isOrthographic);
+    return snapshot(scene, state, this.overlays.on, this.stage.place(), this.stage.isOrthographic);
   }
 
   /** The first scene of a connection: the session on the other side is new. True for it. */
@@ -66,10 +65,7 @@ export class Restore {
     this.shownCamera = this.shownProjection = null;
     if (orthographic !== null) this.stage.setOrthographic(orthographic);
     if (!numbers) return false;
-    const [x = 0, y = 0, z = 1, tx = 0, ty = 0, tz = 0] = numbers;
-    this.stage.orbit.target.set(tx, ty, tz);
-    this.stage.camera.position.set(x, y, z);
-    this.stage.orbit.update();
+    this.stage.place(numbers);
     return true;
   }
 

@@ -19,7 +19,7 @@ const SMOOTHED = 300_000;
 /** The side of the square that stands for a plane (m). */
 const PLANE = 4;
 
-type MeshVisual = MeshShape & { rgba: Colour };
+export type MeshVisual = MeshShape & { rgba: Colour };
 const loaded = new Map<string, Promise<Object3D>>();
 
 function material(rgba: Colour): MeshStandardMaterial {
@@ -83,10 +83,27 @@ function simple(visual: SimpleShape): BufferGeometry {
   }
 }
 
-async function mesh(visual: MeshVisual): Promise<Object3D> {
+/** What is drawn alike is one body. */
+export function bodyKey({ url, format, rgba }: MeshVisual): string {
+  return `${url} ${format === "dae" ? "" : JSON.stringify(rgba)}`;
+}
+
+/** A body that is there already, in place of what would be fetched. */
+export function provide(visual: MeshVisual, body: Object3D): void {
+  if (visual.format === "stl") {
+    const paint = material(visual.rgba);
+    body.traverse((part) => {
+      if (part instanceof Mesh) part.material = paint;
+    });
+  }
+  loaded.set(bodyKey(visual), Promise.resolve(body));
+}
+
+/** The body of a mesh file, in its own unit. Rejects with a sentence where it is not to be had. */
+export async function mesh(visual: MeshVisual): Promise<Object3D> {
   const { url } = visual;
   if (url === null) throw new Error(visual.problem ?? `${visual.uri} was not found`);
-  const key = `${url} ${visual.format === "dae" ? "" : JSON.stringify(visual.rgba)}`;
+  const key = bodyKey(visual);
   let waiting = loaded.get(key);
   if (!waiting) {
     waiting = read(url, visual).then(finite);

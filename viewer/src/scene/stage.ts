@@ -137,6 +137,18 @@ export class Stage {
     this.look(new Vector3(...FROM[view]));
   }
 
+  /** Where the camera is and what it looks at; it is put there if this is given. */
+  place(numbers?: number[]): number[] {
+    const { camera, orbit } = this;
+    if (numbers) {
+      const [x = 0, y = 0, z = 1, tx = 0, ty = 0, tz = 0] = numbers;
+      orbit.target.set(tx, ty, tz);
+      camera.position.set(x, y, z);
+      orbit.update();
+    }
+    return [...camera.position.toArray(), ...orbit.target.toArray()];
+  }
+
   /** Brings the camera to this share of its distance. */
   private zoom(share: number): void {
     const { target } = this.orbit;

@@ -28,11 +28,11 @@ export class Dock {
   private columns: Columns | null = null;
   private end = 0;
 
-  /** `live` is called to leave the recording, `trail` to show the trail or not. */
-  constructor(readonly element: HTMLElement, private readonly player: Player, actions: { live: () => void; trail: (shown: boolean) => void }) {
+  /** `live` is called to leave the recording (not where there is nothing else), `trail` to show the trail or not. */
+  constructor(readonly element: HTMLElement, private readonly player: Player, actions: { live?: () => void; trail: (shown: boolean) => void }) {
     element.append(
       this.play, h("span", { class: "dock-time" }, this.marks, this.slider), this.time, this.speed,
-      h("span", { class: "group" }, this.loop, this.trail), this.live,
+      h("span", { class: "group" }, this.loop, this.trail), ...(actions.live ? [this.live] : []),
     );
     this.play.addEventListener("click", () => (player.playing ? player.pause() : player.play()));
     this.loop.addEventListener("click", () => {
@@ -43,7 +43,7 @@ export class Dock {
       press(this.trail, this.trail.getAttribute("aria-pressed") !== "true");
       actions.trail(this.trail.getAttribute("aria-pressed") === "true");
     });
-    this.live.addEventListener("click", () => actions.live());
+    this.live.addEventListener("click", () => actions.live?.());
     this.speed.addEventListener("change", () => (player.speed = Number(this.speed.value)));
     this.slider.addEventListener("input", () => {
       player.pause();

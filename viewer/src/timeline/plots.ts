@@ -20,7 +20,8 @@ export class Plots {
   private timer = 0;
   private moment = { index: 0, time: 0 };
 
-  constructor(private readonly seek: (time: number) => void, ...saves: Child[]) {
+  /** `saves`: buttons in one group, and what comes after them. */
+  constructor(private readonly seek: (time: number) => void, saves: Child[] = [], after: Child = null) {
     const chips = KINDS.map((kind) => {
       const button = h("button", { class: "button small", type: "button", "aria-pressed": String(SHOWN_FIRST.includes(kind.name)), onclick: () => {
         const shown = button.getAttribute("aria-pressed") !== "true";
@@ -34,7 +35,7 @@ export class Plots {
     this.panel.body.append(
       h("div", { class: "row" },
         h("span", { class: "chips", role: "group", "aria-label": "Plots shown" }, ...chips),
-        h("span", { class: "group", role: "group", "aria-label": "Save" }, ...saves)),
+        saves.length > 0 && h("span", { class: "group", role: "group", "aria-label": "Save" }, ...saves), after),
       h("p", { class: "note marks" },
         h("span", { class: "mark singular" }), "a singular value is lost ", h("span", { class: "mark limit" }), "a joint is at a limit"),
       this.list,

@@ -61,6 +61,16 @@ export class Recording {
     return raw === undefined ? null : (JSON.parse(raw) as State);
   }
 
+  /** Scenes, each from its first state on. */
+  parts(): readonly { from: number; scene: Scene }[] {
+    return this.scenes;
+  }
+
+  /** All states, one a line. */
+  lines(): Blob {
+    return new Blob([this.raws.join("\n")]);
+  }
+
   json(): Blob {
     const scene = this.sceneAt(0);
     const head = JSON.stringify({

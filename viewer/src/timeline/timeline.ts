@@ -1,7 +1,5 @@
 /** Records the session, opens motions of files, and shows a moment of them in place of the robot as it is. */
-import { h } from "../dom";
-import { download } from "../download";
-import { icon } from "../icons";
+import type { Look } from "../film/film";
 import type { Posture, Scene, State, ToServer } from "../protocol";
 import type { Session } from "../session";
 import { Dock } from "./dock";
@@ -10,6 +8,7 @@ import { readMotion, type Motion, type Sample } from "./motion";
 import { Player } from "./player";
 import { Plots } from "./plots";
 import { MOST, Recording } from "./recording";
+import { Saves } from "./saves";
 import { Trail } from "./trail";
 
 type Told = {
@@ -23,6 +22,9 @@ type Told = {
   /** What the server has to send for the overlays and panels that are open: names, and distances or not. */
   wanted: () => { overlays: string[]; distances: boolean };
   size: () => number;
+  /** From where one looks, and what is drawn beside the robot. */
+  look: () => Look;
+  picture: () => Promise<Blob>;
 };
 export type Moment = { scene: Scene; state: State };
 
@@ -48,17 +50,20 @@ export class Timeline {
   /** Wanted by the player, and not shown yet. */
   private wanted: number | null = null;
   private asking = false;
+  /** Who waits until this state is shown. */
+  private awaited: { index: number; resolve: (shown: boolean) => void } | null = null;
   /** A moment of the recording is shown, or will be. */
   private isWanted = false;
   private later = 0;
 
   constructor(dock: HTMLElement, private readonly session: Session, private readonly tell: Told) {
     this.player = new Player(() => this.move(), () => this.dock.playing(this.player.playing));
-    const [json, csv, png] = [["JSON", "the recording as JSON", () => this.save("json")], ["CSV", "the recording as CSV", () => this.save("csv")], ["PNG", "the plots as PNG", () => this.picture()]] as const;
+    const { say, look, picture } = tell;
+    const saves = new Saves({ recording: () => this.recording, plots: () => this.plots.picture(), look, picture, show: (time) => this.showAt(time), say });
     this.plots = new Plots((time) => {
       this.player.pause();
       this.player.seek(time);
-    }, ...[json, csv, png].map(([words, what, action]) => h("button", { class: "button small", type: "button", onclick: action, "aria-label": `Save ${what}`, title: `Save ${what}` }, icon("save"), words)));
+    }, saves.elements, saves.after);
     this.dock = new Dock(dock, this.player, {
       live: () => this.live(),
       trail: (shown) => {
@@ -181,6 +186,25 @@ export class Timeline {
     this.current = moment;
     this.plots.at(moment.index, this.player.time);
     this.tell.redraw();
+    if (moment.index === this.awaited?.index) this.end(true);
+  }
+
+  /** Shows this time, with all that is to be seen of it; false where something else is shown meanwhile. */
+  private showAt(time: number): Promise<boolean> {
+    this.player.pause();
+    this.end(false);
+    return new Promise((resolve) => {
+      this.awaited = { index: this.recording?.columns.indexAt(time) ?? 0, resolve };
+      this.player.seek(time);
+      if (this.wanted === null && this.awaited.index === this.current?.index) this.end(true);
+      else this.flush();
+    });
+  }
+
+  private end(shown: boolean): void {
+    const { awaited } = this;
+    this.awaited = null;
+    awaited?.resolve(shown);
   }
 
   private move(): void {
@@ -195,11 +219,13 @@ export class Timeline {
   private want(index: number): void {
     this.wanted = index;
     this.isWanted = true;
+    if (this.awaited && index !== this.awaited.index) this.end(false);
     this.tell.wake();
   }
 
   private leave(): boolean {
     this.player.pause();
+    this.end(false);
     this.wanted = null;
     this.isWanted = false;
     const left = this.current !== null;
@@ -294,18 +320,6 @@ export class Timeline {
     this.leave();
     this.dock.at(this.recording?.duration ?? 0, true);
     if (!FRESH.includes(type)) this.session.send({ type: "configuration", q });
-  }
-
-  private save(format: "json" | "csv"): void {
-    const { recording } = this;
-    if (recording) download(format === "json" ? recording.json() : recording.csv(), `${recording.scene.name}.${format}`);
-  }
-
-  private picture(): void {
-    this.plots.picture().then(
-      (blob) => download(blob, `${this.recording?.scene.name ?? "cylindroid"}-plots.png`),
-      (error: unknown) => this.tell.say(`The picture could not be saved: ${error instanceof Error ? error.message : String(error)}.`, true),
-    );
   }
 }
 
