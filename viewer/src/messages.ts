@@ -4,6 +4,7 @@
 export type About = {
   "type": "session",
   name: string | null,
+  begun: number,
   clients: number,
   driver: Driver,
   program: boolean,

@@ -1,13 +1,16 @@
 /** Brings a session to a configuration: that of the address on load, the last one after the server came back. */
 import type { Overlays } from "./overlays/overlays";
-import type { Scene, State } from "./protocol";
+import type { About, Scene, State } from "./protocol";
 import type { Stage } from "./scene/stage";
 import type { Session } from "./session";
 import { parse, snapshot, type Snapshot } from "./share";
 
 export class Restore {
   private wanted: Snapshot | null = null;
-  private last: Snapshot | null = null;
+  /** The session that was lost, and whether this page drove it; `begun` is null for a page alone. */
+  private last: { shot: Snapshot; begun: number | null; drove: boolean } | null = null;
+  /** Of the session: it is gone when the connection is. */
+  private about: About | null = null;
   private fresh = true;
 
   constructor(
@@ -26,17 +29,25 @@ export class Restore {
       if (this.session.scene) this.apply(this.session.scene);
       this.camera();
     });
+    session.on("about", (about) => (this.about = about));
     session.on("link", ({ link }) => {
       if (link !== "lost" || this.fresh) return;
       this.fresh = true;
-      this.last = this.now();
+      const { scene, state } = session;
+      const { about } = this;
+      // The robot as it was, whatever is shown.
+      const shot = scene && state && this.shot(scene, state);
+      this.last = shot && { shot, begun: about?.begun ?? null, drove: about === null || about.driver === "you" };
     });
   }
 
   /** The configuration as it is. */
   now(): Snapshot | null {
     const { scene, state } = this.shown();
-    if (!scene || !state) return null;
+    return scene && state ? this.shot(scene, state) : null;
+  }
+
+  private shot(scene: Scene, state: State): Snapshot {
     return snapshot(scene, state, this.overlays.on, this.stage.place(), this.stage.isOrthographic);
   }
 
@@ -44,18 +55,22 @@ export class Restore {
   scene(scene: Scene): boolean {
     if (!this.fresh) return false;
     this.fresh = false;
-    // A session that others hold, or a program, is as they have it.
-    const { about } = this.session;
-    const isOwn = about === null || (!about.program && about.clients === 1 && this.session.drives);
-    if (!isOwn) this.wanted = null;
-    else if (this.last?.model === scene.name) {
-      this.wanted = this.last;
+    const { session, last } = this;
+    const { about } = session;
+    // A session that others hold, or a program, is as they have it; so is one that has gone on meanwhile.
+    const isNew = about === null || (!about.program && session.drives && (last ? about.begun !== last.begun : about.clients === 1));
+    const isRestored = isNew && last?.shot.model === scene.name;
+    if (!isNew) this.wanted = null;
+    else if (isRestored) {
+      this.wanted = last.shot;
       this.say("The connection is restored, with the previous configuration.");
     }
     this.last = null;
-    this.session.send({ type: "overlays", names: this.overlays.names() });
+    session.send({ type: "overlays", names: this.overlays.names() });
     this.begin();
     this.apply(scene);
+    // Whoever drove before drives again.
+    if (isRestored && !last.drove) session.send({ type: "drive", on: false });
     return true;
   }
 

@@ -2,15 +2,31 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  apart, browserOfFile, enter, launch, moveTarget, picture, saved, served, showOverlay, state, until, untilNear, untilReached,
+  apart, browserOfFile, enter, launch, moveTarget, openPanel, picture, saved, scene, served, showOverlay, state, until, untilNear, untilReached,
 } from "./lib.mjs";
 
 const { look, visit } = browserOfFile();
 
-test("a stopped server is shown, and reconnected to with the configuration", () =>
+test("a stopped server is shown, and reconnected to with all that was chosen", () =>
   visit(["panda"], async (page, first) => {
     await enter(page.getByLabel("panda_joint2 as a number"), -0.3);
     await until(page, "Math.abs(state.q[1] + 0.3) < 1e-9");
+    await page.getByLabel("Frame", { exact: true }).selectOption("panda_link8");
+    await page.getByLabel("Task", { exact: true }).selectOption("position");
+    await until(page, 'scene.frame === "panda_link8" && scene.task.name === "position"');
+    await page.getByLabel("Inverse", { exact: true }).selectOption("damped");
+    await until(page, 'scene.method.name === "damped"');
+    await showOverlay(page, "velocity-ellipsoid");
+    await openPanel(page, "distances");
+    await openPanel(page, "obstacles");
+    await page.getByRole("button", { name: "Add", exact: true }).click();
+    await until(page, "scene.obstacles.length === 1");
+    await page.getByRole("switch", { name: "Avoid collisions" }).check();
+    await until(page, "scene.avoidance !== null && state.obstacles.length === 1 && state.distances !== null");
+    await page.getByRole("button", { name: "Pause" }).click();
+    await moveTarget(page, "z", 0.1);
+    await until(page, "!state.playing");
+    const [was, chosen] = [await state(page), await scene(page)];
     await first.stop();
     await page.getByText("The server has stopped.").waitFor();
     await page.locator('.status[data-state="lost"]').waitFor();
@@ -20,7 +36,15 @@ test("a stopped server is shown, and reconnected to with the configuration", () 
     await served(["panda", "--port", new URL(first.url).port], async () => {
       await page.locator('.status[data-state="open"]').waitFor();
       await page.getByText("The server has stopped.").waitFor({ state: "hidden" });
-      await until(page, "state !== window.last && Math.abs(state.q[1] + 0.3) < 1e-6");
+      await until(page, `state !== window.last && Math.abs(state.q[1] + 0.3) < 1e-6 && state.target.position[2] === ${was.target.position[2]}`);
+      await until(page, 'state.overlays["velocity-ellipsoid"] !== undefined && state.distances !== null');
+      const [is, now] = [await state(page), await scene(page)];
+      assert.ok(apart(is.q, was.q) < 1e-12);
+      assert.deepEqual(is.target, was.target);
+      assert.equal(is.playing, false);
+      assert.deepEqual(is.obstacles, was.obstacles);
+      for (const part of /** @type {const} */ (["frame", "task", "method", "obstacles", "avoidance"])) assert.deepEqual(now[part], chosen[part], part);
+      await picture(page, "server-restarted");
     });
   }, { width: 1280, height: 720, expect: /WebSocket|net::ERR_/ }));
 

@@ -75,6 +75,34 @@ test("a page that comes back finds its session as the others have it", () =>
       });
     })));
 
+test("two pages of a session find it again on a server that was restarted; the driver drives", () =>
+  served(["panda"], (first) =>
+    look(first.url + NAMED, async (driver) => {
+      await driver.locator(".role").getByText("Driving, 1 page").waitFor();
+      await look(first.url + NAMED, async (observer) => {
+        await observer.locator(".role").getByText("Observing, 2 pages").waitFor();
+        const target = await moveTarget(driver, "z", 0.05);
+        await until(driver, 'state.servo.status === "reached"');
+        const { q } = await same(driver, observer);
+        // The driver shall wait until it is told to come back.
+        await driver.evaluate(() => void (/** @type {any} */ (window).viewer.session.connection.pause = 600));
+        await first.stop();
+        for (const page of [driver, observer]) await page.getByText("The server has stopped.").waitFor();
+        await served(["panda", "--port", new URL(first.url).port], async () => {
+          // The observer comes first, and finds nothing there.
+          await observer.getByRole("button", { name: "Reconnect now" }).click();
+          await untilNear(observer, "state.target.position", target, 1e-6);
+          await observer.locator(".role").getByText("Nobody drives, 1 page").waitFor();
+          await driver.getByRole("button", { name: "Reconnect now" }).click();
+          await driver.locator(".role").getByText("Driving, 2 pages").waitFor();
+          for (const page of [driver, observer]) {
+            await untilNear(page, "state.target.position", target, 1e-6);
+            await untilNear(page, "state.q", q, 1e-9);
+          }
+        });
+      }, { expect: /WebSocket|net::ERR_/ });
+    }, { expect: /WebSocket|net::ERR_/ })));
+
 test("a page alone has no role", () =>
   served(["panda"], ({ url }) =>
     look(url, async (page) => {

@@ -1,10 +1,7 @@
 /** The dialogue that opens files and switches models. */
 import { fill, h, type Child } from "../dom";
+import type { Models, Refusal } from "../protocol";
 import { ACCEPTED, isMotion, modelFiles, request, type ModelFiles } from "./model_files";
-
-/** What the server has, and what it has opened. */
-type Models = { name: string; catalogue: { name: string; description: string }[]; opened: { id: string; name: string }[]; opens: boolean };
-type Refusal = { message: string; file: string | null; line: number | null; column: number | null; text: string | null; help: string };
 
 const PARAMETER = "model";
 

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use axum::extract::ws::Utf8Bytes;
 use cylindroid::Result;
@@ -36,6 +36,8 @@ const CATCH_UP: Duration = Duration::from_millis(100);
 pub(super) struct SharedSession {
     /// `None`: of one client alone.
     name: Option<String>,
+    /// Since 1970 [ms].
+    begun: u64,
     inner: Mutex<Inner>,
     changed: Arc<Notify>,
     /// A client moved something that a program waits for.
@@ -87,6 +89,7 @@ pub(super) struct Membership {
 #[serde(tag = "type", rename = "session")]
 pub(super) struct AboutJson<'a> {
     name: Option<&'a str>,
+    begun: u64,
     clients: usize,
     driver: Driver,
     program: bool,
@@ -121,8 +124,10 @@ impl SharedSession {
             owed: Duration::ZERO,
         };
         let changed = Arc::new(Notify::new());
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let shared = Arc::new(Self {
             name,
+            begun: u64::try_from(now.as_millis()).unwrap_or(u64::MAX),
             inner: Mutex::new(inner),
             changed: Arc::clone(&changed),
             dragged: Condvar::new(),
@@ -178,6 +183,7 @@ impl SharedSession {
             };
             let about = AboutJson {
                 name: self.name.as_deref(),
+                begun: self.begun,
                 clients: inner.clients.len(),
                 driver,
                 program: inner.program.is_some(),
