@@ -11,6 +11,7 @@ import { UnitControls } from "./controls/units";
 import { socketUrl } from "./connection";
 import { h } from "./dom";
 import { download } from "./download";
+import { MapPanel } from "./cloud/map_panel";
 import { Drawings } from "./drawings";
 import { onDrop } from "./files";
 import { gltf } from "./gltf";
@@ -113,19 +114,20 @@ function start(): void {
       (error: unknown) => page.toast(`The robot could not be saved: ${String(error)}`, true),
     );
   });
+  const map = new MapPanel(session, stage, page.toast, () => target.isHovered());
   const [pose, singular, screws] = [posePanel(), singularPanel(redraw), screwsPanel()];
   const reports = new Reports(session);
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
   reports.watch("mobility", mobility);
   reports.watch("manipulability", capability);
-  page.left.append(joints.panel.element, switches.panel.element, obstaclePanel.panel.element, servo.panel.element, new UnitControls().panel.element);
+  page.left.append(joints.panel.element, switches.panel.element, map.panel.element, obstaclePanel.panel.element, servo.panel.element, new UnitControls().panel.element);
   page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
   inUnits(page.right, redraw);
   // A folded panel is not kept up to date.
   for (const { onToggle } of [joints.panel, servo.panel, obstaclePanel.panel, pose, singular]) onToggle(redraw);
   const drawings = new Drawings(labels);
   session.on("drawings", (message) => drawings.show(message));
-  stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group, drawings.group);
+  stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group, drawings.group, map.cloud.group);
 
   const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
   screws.onToggle(wantScrews);
@@ -150,7 +152,7 @@ function start(): void {
   new Role(bar.status, session);
   page.plots.append(timeline.plots.panel.element);
   stage.scene.add(timeline.trail.group);
-  const dialog = new OpenDialog((file) => void timeline.open(file));
+  const dialog = new OpenDialog((file) => void map.open(file).then((is) => (is ? undefined : timeline.open(file))));
   onDrop((files) => void dialog.take(files));
   distances.panel.onToggle(() => timeline.refresh());
   const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
@@ -265,7 +267,7 @@ function start(): void {
   stage.onFrame(() => timeline.flush());
   stage.onFrame(() => labels.place(stage.eye));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, timeline, target, robot, distances, collisions, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
+  Object.assign(window, { viewer: { session, stage, timeline, target, robot, distances, collisions, map, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
 }
 
 try {

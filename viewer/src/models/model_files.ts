@@ -8,7 +8,8 @@ export type ModelFiles = {
 };
 
 const MODELS = ["urdf", "sdf", "mjcf", "toml", "xml"];
-const MOTIONS = ["csv", "json"];
+/** Motions, and maps of sweeps. */
+const MOTIONS = ["csv", "json", "parquet"];
 /** Meshes and what they refer to, as the server hands them out. */
 const COMPANIONS = ["stl", "dae", "obj", "mtl", "png", "jpg", "jpeg", "gif", "bmp", "tga", "tif", "tiff", "webp"];
 /** All files together (bytes): the server takes no more. */
@@ -46,7 +47,7 @@ export async function modelFiles(given: File[]): Promise<ModelFiles> {
   if (files.size > MOST || size > LARGEST) throw new Error(`There are ${files.size} files of ${Math.ceil(size / (1 << 20))} MiB; ${MOST} of ${LARGEST >> 20} MiB are taken.`);
   const candidates = [...files].filter(([path, bytes]) => isModel(path, bytes)).map(([path]) => path).sort();
   if (candidates.length === 0) {
-    throw new Error(`${given.map(({ name }) => name).join(", ")}: no URDF, MJCF, SDF or mechanism file (.toml), and no motion (.csv, .json).`);
+    throw new Error(`${given.map(({ name }) => name).join(", ")}: no URDF, MJCF, SDF or mechanism file (.toml), and no motion or map (.csv, .json, .parquet).`);
   }
   return { candidates, files };
 }

@@ -25,11 +25,11 @@ export class OpenDialog {
     "dialog", { class: "open", "aria-labelledby": "open-title" },
     h("form", { method: "dialog", class: "row" }, h("h2", { id: "open-title" }, "Open"), h("button", { class: "button small", "aria-label": "Close" }, "×")),
     h("div", { class: "row" }, h("button", { class: "button primary", type: "button", onclick: () => this.input.click() }, "Choose files"), this.input),
-    h("p", { class: "note" }, "A model: URDF, MJCF, SDF or a mechanism file (.toml), with its meshes in the same choice or all of it in a zip. A motion of the model that is shown: CSV or JSON. Files can be dropped on the page, too."),
+    h("p", { class: "note" }, "A model: URDF, MJCF, SDF or a mechanism file (.toml), with its meshes in the same choice or all of it in a zip. A motion of the model that is shown, or a map of a sweep: CSV, JSON or Parquet. Files can be dropped on the page, too."),
     this.problem, this.choice, this.models,
   );
 
-  /** `motion` shows a motion of the model. */
+  /** `motion` shows a motion of the model, or a map. */
   constructor(private readonly motion: (file: File) => void) {
     document.body.append(this.element);
     this.input.addEventListener("change", () => {

@@ -1,0 +1,135 @@
+/** The map of a sweep: its points in the view, what colours them, a cut, and the robot at the point that is clicked. */
+import { Choice } from "../controls/choice";
+import { h, text } from "../dom";
+import { count, fixed, short } from "../format";
+import { panel } from "../panels/panel";
+import type { Scene } from "../protocol";
+import type { Stage } from "../scene/stage";
+import type { Session } from "../session";
+import { Cloud, type Axis } from "./cloud";
+import { rangeOf } from "./colours";
+import { readTable, type Table } from "./table";
+
+/** Columns that number rows. */
+const NUMBERS = ["index"];
+const PLACES = ["x", "y", "z", "qw", "qx", "qy", "qz"];
+const AXES: Axis[] = ["x", "y", "z"];
+const SIZE = { least: 1, most: 12, first: 3 };
+
+export class MapPanel {
+  readonly panel = panel("map", "Map", true);
+  readonly cloud: Cloud;
+  private readonly colour = new Choice("Colour", (name) => this.paint(name));
+  private readonly axis = new Choice("Cut", (axis) => this.cut(AXES.find((one) => one === axis) ?? null));
+  private readonly low = h("span", { class: "number" });
+  private readonly high = h("span", { class: "number" });
+  private readonly clicked = h("p", { class: "note", role: "status" }, "A click on a point moves the robot there.");
+  private readonly size = h("input", { type: "range", min: SIZE.least, max: SIZE.most, step: 0.5, value: SIZE.first, "aria-label": "Size of points [pixels]" });
+  private readonly place = h("input", { type: "range", step: "any", "aria-label": "Place of the cut [m]" });
+  private readonly placeWords = h("span", { class: "note" });
+  private table: Table | null = null;
+  private cutAxis: Axis | null = null;
+
+  constructor(private readonly session: Session, stage: Stage, private readonly say: (words: string, bad?: boolean) => void, isHandle: () => boolean) {
+    this.cloud = new Cloud(stage, (row) => this.pick(row), isHandle);
+    this.size.addEventListener("input", () => {
+      fillSlider(this.size);
+      this.cloud.resize(this.size.valueAsNumber);
+    });
+    fillSlider(this.size);
+    this.place.addEventListener("input", () => this.move());
+    this.panel.body.append(
+      this.colour.element,
+      h("div", { class: "ramp-line" }, this.low, h("span", { class: "ramp" }), this.high),
+      h("label", { class: "line" }, h("span", { class: "note" }, "Points"), this.size),
+      this.axis.element,
+      h("label", { class: "line" }, this.placeWords, this.place),
+      this.clicked,
+      h("div", { class: "row" }, h("button", { class: "button small", type: "button", onclick: () => this.show(null) }, "Remove")),
+    );
+    this.panel.element.hidden = true;
+  }
+
+  /** Shows the map of a file; false where it is none. */
+  async open(file: File): Promise<boolean> {
+    try {
+      const table = await readTable(file);
+      if (table) this.show(table);
+      return table !== null;
+    } catch (error) {
+      this.say(error instanceof Error ? error.message : String(error), true);
+      return true;
+    }
+  }
+
+  private show(table: Table | null): void {
+    this.table = table;
+    this.panel.element.hidden = !table;
+    this.cloud.show(table, this.size.valueAsNumber);
+    if (!table) return;
+    this.panel.note(`${table.name}, ${count(table.rows, "point")}`);
+    const joints = new Set(this.session.scene?.coordinates.map(({ name }) => name));
+    const names = [...table.columns.keys()].filter((name) => !NUMBERS.includes(name));
+    const first = names.find((name) => !joints.has(name) && !PLACES.includes(name)) ?? "z";
+    this.colour.show(names.map((name) => [name, name]), first);
+    this.axis.show([["", "none"], ...AXES.map((axis): [string, string] => [axis, `beyond ${axis}`])], "");
+    this.paint(first);
+    this.cut(null);
+    text(this.clicked, "A click on a point moves the robot there.");
+  }
+
+  private paint(name: string): void {
+    const values = this.table?.columns.get(name);
+    if (!values) return;
+    const range = rangeOf(values);
+    this.cloud.paint(values, range);
+    text(this.low, short(range[0]));
+    text(this.high, short(range[1]));
+  }
+
+  private cut(axis: Axis | null): void {
+    this.cutAxis = axis;
+    this.place.disabled = axis === null;
+    if (axis) {
+      const { min, max } = this.cloud.box();
+      [this.place.min, this.place.max] = [String(min[axis]), String(max[axis])];
+      this.place.valueAsNumber = (min[axis] + max[axis]) / 2;
+    }
+    this.move();
+  }
+
+  private move(): void {
+    const at = this.place.valueAsNumber;
+    fillSlider(this.place);
+    text(this.placeWords, this.cutAxis ? `Cut at ${fixed(at, 3)} m` : "Cut at");
+    this.cloud.cut(this.cutAxis, at);
+  }
+
+  /** Moves the robot to the configuration of a row; coordinates that it has not stay. */
+  private pick(row: number): void {
+    const { table } = this;
+    const { scene, state } = this.session;
+    if (!table || !scene || !state) return;
+    const columns = scene.coordinates.map(({ name }) => table.columns.get(name));
+    if (columns.every((column) => !column)) {
+      this.say(`${table.name} has no column of a joint of ${scene.name}; the robot stays.`, true);
+      return;
+    }
+    const q = state.q.map((value, i) => columns[i]?.[row] ?? value);
+    const number = table.columns.get("index")?.[row] ?? row;
+    text(this.clicked, `Point ${number}: ${this.words(table, row, scene)}`);
+    this.session.send({ type: "configuration", q });
+  }
+
+  private words(table: Table, row: number, scene: Scene): string {
+    const joints = new Set(scene.coordinates.map(({ name }) => name));
+    const shown = [...table.columns].filter(([name]) => !joints.has(name) && !NUMBERS.includes(name) && !PLACES.slice(3).includes(name));
+    return shown.slice(0, 8).map(([name, values]) => `${name} ${short(values[row], 4)}`).join(", ");
+  }
+}
+
+/** The part of a slider before its thumb is coloured. */
+function fillSlider(slider: HTMLInputElement): void {
+  const [low, high] = [Number(slider.min), Number(slider.max)];
+  slider.style.setProperty("--filled", `${high > low ? ((100 * (slider.valueAsNumber - low)) / (high - low)).toFixed(1) : 0}%`);
+}

@@ -1,0 +1,98 @@
+/** Numbers of many configurations, as `cylindroid sweep` and `map` write them: Parquet, CSV or JSON with names of columns. */
+
+/** Rows of a table. */
+const MOST = 2_000_000;
+/** Largest file (bytes). */
+const LARGEST = 256 << 20;
+/** Columns of strings, such as classes of screw systems, have no colour. */
+const TIME = "time";
+
+export type Table = {
+  name: string;
+  rows: number;
+  /** Numbers of each column, not a number where a row has none. */
+  columns: Map<string, Float64Array>;
+};
+
+/** Null for a file that is a motion. Throws an error that names the file and the place. */
+export async function readTable(file: File): Promise<Table | null> {
+  if (file.size > LARGEST) throw new Error(`${file.name} has ${Math.ceil(file.size / (1 << 20))} MiB, more than ${LARGEST >> 20}; open a part of it.`);
+  const kind = file.name.toLowerCase().replace(/^.*\./, "");
+  const table = kind === "parquet" ? await fromParquet(file) : kind === "csv" ? fromCsv(file.name, await file.text()) : fromJson(file.name, await file.text());
+  if (!table || table.columns.has(TIME) || !(table.columns.has("x") && table.columns.has("y"))) {
+    if (kind !== "parquet") return null;
+    throw new Error(`${file.name} has no columns x and y: add the quantity "pose" to the sweep.`);
+  }
+  if (table.rows === 0) throw new Error(`${file.name} has no row.`);
+  if (table.rows > MOST) throw new Error(`${file.name} has ${table.rows} rows, more than ${MOST}; open a part of it.`);
+  return table;
+}
+
+async function fromParquet(file: File): Promise<Table> {
+  const { parquetMetadataAsync, parquetRead } = await import("hyparquet");
+  const buffer = { byteLength: file.size, slice: (start: number, end?: number) => file.slice(start, end).arrayBuffer() };
+  try {
+    const metadata = await parquetMetadataAsync(buffer);
+    const rows = Number(metadata.num_rows);
+    const columns = new Map<string, Float64Array>();
+    await parquetRead({
+      file: buffer, metadata,
+      onChunk: ({ columnName, columnData, rowStart }) => {
+        const column = columns.get(columnName) ?? new Float64Array(rows).fill(NaN);
+        columns.set(columnName, column);
+        for (let i = 0; i < columnData.length; i += 1) column[rowStart + i] = numberOf(columnData[i]);
+      },
+    });
+    return { name: file.name, rows, columns };
+  } catch (error) {
+    throw new Error(`${file.name} is no Parquet file that can be read: ${error instanceof Error ? error.message : String(error)}.`);
+  }
+}
+
+/** Null where the first line names no columns. */
+function fromCsv(name: string, text: string): Table | null {
+  const lines = text.split(/\r?\n/).filter((line) => line !== "" && !line.startsWith("#"));
+  const names = (lines[0] ?? "").split(",").map((cell) => cell.trim());
+  if (!names.includes("x") || !names.includes("y") || names.includes(TIME)) return null;
+  const columns = names.map(() => new Float64Array(lines.length - 1));
+  for (let i = 1; i < lines.length; i += 1) {
+    const cells = (lines[i] ?? "").split(",");
+    if (cells.length !== names.length) throw new Error(`${name}, row ${i} has ${cells.length} cells, not ${names.length}.`);
+    cells.forEach((cell, k) => {
+      const column = columns[k];
+      if (column) column[i - 1] = cell === "" ? NaN : numberOf(cell);
+    });
+  }
+  return { name, rows: lines.length - 1, columns: named(names, columns) };
+}
+
+/** Null where it is no table with columns and rows. */
+function fromJson(name: string, text: string): Table | null {
+  let read: unknown;
+  try {
+    read = JSON.parse(text);
+  } catch {
+    return null; // told as a motion
+  }
+  const { columns: given, rows } = (read ?? {}) as { columns?: unknown; rows?: unknown };
+  if (!Array.isArray(given) || !Array.isArray(rows)) return null;
+  const names = given.map((column: unknown) => (typeof column === "string" ? column : String((column as { name?: unknown } | null)?.name)));
+  const columns = names.map(() => new Float64Array(rows.length));
+  rows.forEach((row: unknown, i) => {
+    if (!Array.isArray(row) || row.length !== names.length) throw new Error(`${name}, row ${i + 1} is no list of ${names.length} numbers.`);
+    columns.forEach((column, k) => (column[i] = numberOf(row[k])));
+  });
+  return { name, rows: rows.length, columns: named(names, columns) };
+}
+
+/** Columns without a number are left out. */
+function named(names: string[], columns: Float64Array[]): Map<string, Float64Array> {
+  return new Map(names.flatMap((name, i) => {
+    const column = columns[i];
+    return column?.some((value) => !Number.isNaN(value)) ? [[name, column]] : [];
+  }));
+}
+
+function numberOf(value: unknown): number {
+  return typeof value === "number" ? value : typeof value === "bigint" || (typeof value === "string" && value.trim() !== "") ? Number(value) : NaN;
+}

@@ -1,0 +1,124 @@
+/** Maps of sweeps: points in the view that are coloured, cut and clicked. */
+import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { mkdtemp, readFile, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { promisify } from "node:util";
+import { apart, BINARY, browserOfFile, openFiles, picture, scene, state, until } from "./lib.mjs";
+
+/** @typedef {import("playwright-core").Page} Page */
+
+const { visit } = browserOfFile();
+const folder = await mkdtemp(join(tmpdir(), "cylindroid-map-"));
+const run = (/** @type {string[]} */ ...args) => promisify(execFile)(BINARY, args, { cwd: folder });
+const QUANTITIES = ["--quantities", "pose,yoshikawa,limit_distance"];
+
+/**
+ * What the page has read, by columns.
+ * @param {Page} page
+ * @returns {Promise<Record<string, number[]>>}
+ */
+const table = (page) => page.evaluate(() => Object.fromEntries([.../** @type {any} */ (window).viewer.map.table.columns].map(([name, values]) => [name, [...values]])));
+
+/**
+ * Where a point of the map is seen, if nothing of the map is in front of it.
+ * @param {Page} page
+ * @param {number} row
+ * @returns {Promise<{ x: number, y: number }>}
+ */
+const seen = (page, row) => page.evaluate((row) => {
+  const { map, project, stage } = /** @type {any} */ (window).viewer;
+  const { columns } = map.table;
+  const [x, y] = project(["x", "y", "z"].map((axis) => columns.get(axis)?.[row] ?? 0));
+  const box = stage.renderer.domElement.getBoundingClientRect();
+  return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
+}, row);
+
+test("a part of a sweep is drawn, coloured and cut; a click on a point moves the robot there", () =>
+  visit(["panda"], async (page) => {
+    await run("sweep", "panda", "--samples", "3000", ...QUANTITIES, "--out", "sweep");
+    await openFiles(page, join(folder, "sweep/part-000000.parquet"));
+    const panel = page.locator('[data-panel="map"]');
+    await panel.getByText("part-000000.parquet, 3000 points").waitFor();
+    await run("sweep", "panda", "--samples", "3000", ...QUANTITIES, "--out", "sweep.csv");
+    const [head = "", ...rows] = (await readFile(join(folder, "sweep.csv"), "utf8")).trim().split("\n");
+    const columns = await table(page);
+    for (const [k, name] of head.split(",").entries()) assert.ok(apart(columns[name] ?? [], rows.map((row) => Number(row.split(",")[k]))) < 1e-12, name);
+    assert.equal(await panel.getByLabel("Colour").inputValue(), "yoshikawa");
+    await picture(page, "map");
+
+    // Of a cut map the points beyond are neither drawn nor clicked.
+    await panel.getByLabel("Cut", { exact: true }).selectOption("x");
+    await page.getByLabel("Place of the cut [m]").fill("0");
+    await picture(page, "map-cut");
+    const inFront = await page.evaluate(() => {
+      const { map, stage } = /** @type {any} */ (window).viewer;
+      const box = stage.renderer.domElement.getBoundingClientRect();
+      const found = new Set();
+      for (let x = 0; x < box.width; x += 6) for (let y = 60; y < box.height; y += 6) found.add(map.cloud.at({ clientX: box.left + x, clientY: box.top + y }));
+      return [...found].filter((row) => row !== null);
+    });
+    assert.ok(inFront.length > 100);
+    assert.ok(inFront.every((row) => (columns["x"]?.[row] ?? 1) <= 1e-6));
+    await panel.getByLabel("Cut", { exact: true }).selectOption("");
+
+    // The robot comes to a point that is clicked, and its tool is there.
+    const { coordinates } = await scene(page);
+    const row = await page.evaluate(() => {
+      const { map, stage, target, project } = /** @type {any} */ (window).viewer;
+      const box = stage.renderer.domElement.getBoundingClientRect();
+      const [hx, hy] = project(target.gizmo.object.position.toArray());
+      // Away from the handle, which is dragged.
+      for (let x = 40; x < box.width - 40; x += 5) {
+        for (let y = 80; y < box.height - 40; y += 5) {
+          const far = Math.hypot(x - ((hx + 1) / 2) * box.width, y - ((1 - hy) / 2) * box.height) > 150;
+          const row = far ? map.cloud.at({ clientX: box.left + x, clientY: box.top + y }) : null;
+          if (row !== null) return row;
+        }
+      }
+      return -1;
+    });
+    const at = await seen(page, row);
+    await page.mouse.click(at.x, at.y);
+    await panel.getByText(/^Point \d+: /).waitFor();
+    const number = Number(/\d+/.exec(await panel.getByText(/^Point \d+: /).innerText())?.[0]);
+    const q = coordinates.map(({ name }) => columns[name]?.[number] ?? NaN);
+    await until(page, `Math.abs(state.q[0] - ${q[0]}) < 1e-9`);
+    const now = await state(page);
+    assert.ok(apart(now.q, q) < 1e-9);
+    assert.ok(apart(now.tool.position, ["x", "y", "z"].map((name) => columns[name]?.[number] ?? NaN)) < 1e-9);
+    await picture(page, "map-clicked");
+    await panel.getByRole("button", { name: "Remove" }).click();
+    await panel.waitFor({ state: "hidden" });
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.map.cloud.group.children.length), 0);
+  }));
+
+test("the file of a map is drawn in the plane of its mechanism", () =>
+  visit(["five-bar"], async (page) => {
+    await run("map", "five-bar", "--over", "x=-1:3.5:30", "--over", "y=-2.6:2.6:30", "--out", "map.json");
+    await openFiles(page, join(folder, "map.json"));
+    await page.locator('[data-panel="map"]').getByText(/map\.json, \d+ points/).waitFor();
+    const columns = await table(page);
+    assert.ok(columns["type_two"] && columns["mode"] && !columns["z"]);
+    await page.locator('[data-panel="map"]').getByLabel("Colour").selectOption("type_two");
+    await picture(page, "map-five-bar");
+  }));
+
+test("tables that are no maps say so, and motions stay motions", () =>
+  visit(["panda"], async (page) => {
+    await run("sweep", "panda", "--samples", "100", "--quantities", "yoshikawa", "--out", "without");
+    await openFiles(page, join(folder, "without/part-000000.parquet"));
+    await page.getByText('has no columns x and y: add the quantity "pose" to the sweep.').waitFor();
+    await writeFile(join(folder, "no.parquet"), "PAR1 and nothing else");
+    await openFiles(page, join(folder, "no.parquet"));
+    await page.getByText("no.parquet is no Parquet file that can be read").waitFor();
+    await writeFile(join(folder, "short.csv"), "index,x,y,z\n0,1,2,3\n1,2\n");
+    await openFiles(page, join(folder, "short.csv"));
+    await page.getByText("short.csv, row 2 has 2 cells, not 4.").waitFor();
+    await run("move", "panda", "--to", "0.45,0.15,0.35", "--rpy", "3.1416,0,0.6", "--out", "motion.csv");
+    await openFiles(page, join(folder, "motion.csv"));
+    await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.recording?.length > 5);
+    assert.ok(await page.locator('[data-panel="map"]').isHidden());
+  }));
