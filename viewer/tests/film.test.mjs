@@ -72,7 +72,7 @@ const places = (page, from) => page.evaluate((name) => /** @type {any} */ (windo
 const shown = (page) => page.evaluate(() => /** @type {any} */ (window).film.state().seq);
 
 test("a recording is one HTML file that plays from its file, without a server", () =>
-  visit(["panda", "--obstacle", "sphere:0.08@0.5,0.4,0.6"], async (page, server) => {
+  visit(["panda", "--obstacle", "ball=sphere:0.08@0.5,0.4,0.6"], async (page, server) => {
     await showOverlay(page, "velocity-ellipsoid");
     await record(page, "z", -0.15);
     const { states, times } = JSON.parse(await saved(page, "Save the recording as JSON"));
@@ -174,7 +174,7 @@ test("pictures at even times are a zip of numbered PNG", () =>
     for (const one of seen) assert.deepEqual(one.size, size);
     assert.ok((seen.at(-1)?.changed ?? 0) > 1000, "the robot moves through the pictures");
     // The session has not moved, and a rate that cannot be is refused.
-    assert.deepEqual((await state(page)).q, before.q);
+    assert.ok(apart((await state(page)).q, before.q) < 1e-4);
     await enter(page.getByLabel("Frames per second"), 0);
     await page.getByRole("button", { name: "Save pictures" }).click();
     await page.getByText("Frames per second are a number from 1 to 120.").waitFor();

@@ -46,7 +46,7 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
     const [head = "", ...rows] = (await readFile(join(folder, "sweep.csv"), "utf8")).trim().split("\n");
     const columns = await table(page);
     for (const [k, name] of head.split(",").entries()) assert.ok(apart(columns[name] ?? [], rows.map((row) => Number(row.split(",")[k]))) < 1e-12, name);
-    assert.equal(await panel.getByLabel("Colour").inputValue(), "yoshikawa");
+    assert.equal(await panel.getByLabel("Colour", { exact: true }).inputValue(), "yoshikawa");
     await picture(page, "map");
 
     // Of a cut map the points beyond are neither drawn nor clicked.
@@ -102,7 +102,7 @@ test("the file of a map is drawn in the plane of its mechanism", () =>
     await page.locator('[data-panel="map"]').getByText(/map\.json, \d+ points/).waitFor();
     const columns = await table(page);
     assert.ok(columns["type_two"] && columns["mode"] && !columns["z"]);
-    await page.locator('[data-panel="map"]').getByLabel("Colour").selectOption("type_two");
+    await page.locator('[data-panel="map"]').getByLabel("Colour", { exact: true }).selectOption("type_two");
     await picture(page, "map-five-bar");
   }));
 

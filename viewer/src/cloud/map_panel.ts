@@ -101,7 +101,7 @@ export class MapPanel {
   private move(): void {
     const at = this.place.valueAsNumber;
     fillSlider(this.place);
-    text(this.placeWords, this.cutAxis ? `Cut at ${fixed(at, 3)} m` : "Cut at");
+    text(this.placeWords, this.cutAxis ? `Cut at ${fixed(at, 2)} m` : "Cut at");
     this.cloud.cut(this.cutAxis, at);
   }
 
