@@ -239,6 +239,8 @@ test("10 000 states are scrubbed", (t) =>
       return work.sort((a, b) => a - b);
     });
     const at = (/** @type {number} */ share) => (measured[Math.floor(share * (measured.length - 1))] ?? NaN).toFixed(2);
+    // A mark that the page keeps, with room for a machine that does other things.
+    assert.ok(Number(at(0.5)) < 5, `${at(0.5)} ms`);
     t.diagnostic(`${at(0.5)} ms of JavaScript for a state of 10 000 (median), ${at(0.9)} ms (nine of ten), three plots`);
     await slider(page).focus();
     await page.keyboard.press("PageDown");

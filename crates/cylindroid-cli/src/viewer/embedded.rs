@@ -87,7 +87,8 @@ impl Viewer {
         let (shared, server) = runtime.block_on(async {
             let program = Some(Program::default());
             let shared = SharedSession::begin(Arc::clone(&start), None, program)?;
-            let place = Place { host: &host, port, token: &token, frame_ancestors };
+            let place =
+                Place { host: &host, port, token: &token, frame_ancestors, ..Place::default() };
             let server = Server::of(start, Some(Arc::clone(&shared)), place).await;
             Ok::<_, Error>((shared, server.map_err(failed)?))
         })?;

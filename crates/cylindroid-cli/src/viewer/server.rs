@@ -23,7 +23,7 @@ use super::opened::{self, Known, Offer, Opened, Refusal};
 use super::safety::{Guard, Names, guard};
 use super::sessions::{Asked, Sessions};
 use super::shared_session::SharedSession;
-use super::socket::talk;
+use super::socket::{Silence, talk};
 use super::start::Start;
 
 /// Maximum frame size [bytes]. Longer messages than allowed are answered with an error up to this
@@ -55,6 +55,7 @@ struct Shared {
     opens: bool,
     /// The folder of all paths: empty, or a slash and the token.
     folder: Arc<str>,
+    silence: Silence,
 }
 
 /// Where a server listens, and for whom.
@@ -67,6 +68,7 @@ pub(super) struct Place<'a> {
     pub(super) token: &'a str,
     /// The pages that may show this one in a frame, as in a content security policy.
     pub(super) frame_ancestors: Option<String>,
+    pub(super) silence: Silence,
 }
 
 impl Server {
@@ -84,14 +86,15 @@ impl Server {
     pub(super) async fn of(
         start: Arc<Start>,
         of_program: Option<Arc<SharedSession>>,
-        Place { host, port, token, frame_ancestors }: Place<'_>,
+        Place { host, port, token, frame_ancestors, silence }: Place<'_>,
     ) -> io::Result<Self> {
         let listener = TcpListener::bind((host.trim_matches(['[', ']']), port)).await?;
         let address: SocketAddr = listener.local_addr()?;
         let folder = if token.is_empty() { String::new() } else { format!("/{token}") };
         let (names, sessions) = (Names::new(host, address), Sessions::new(start, of_program));
         let opens = names.is_local() && !sessions.are_of_program();
-        let shared = Shared { sessions, opened: Arc::default(), opens, folder: folder.into() };
+        let shared =
+            Shared { sessions, opened: Arc::default(), opens, folder: folder.into(), silence };
         Ok(Self { listener, names, shared, frame_ancestors })
     }
 
@@ -152,6 +155,7 @@ async fn session(State(shared): State<Shared>, uri: Uri, upgrade: WebSocketUpgra
         return (StatusCode::SERVICE_UNAVAILABLE, what).into_response();
     };
     let upgrade = upgrade.max_message_size(LONGEST).max_frame_size(LONGEST);
+    let silence = shared.silence;
     let sessions = match &asked.model {
         None => Some(shared.sessions),
         Some(id) => shared.opened.sessions(id),
@@ -167,7 +171,7 @@ async fn session(State(shared): State<Shared>, uri: Uri, upgrade: WebSocketUpgra
         });
     };
     upgrade.on_upgrade(async move |socket| {
-        talk(socket, sessions, asked).await;
+        talk(socket, sessions, asked, silence).await;
         drop(place);
     })
 }
@@ -275,5 +279,64 @@ async fn page(State(shared): State<Shared>, uri: Uri) -> Response {
         }
         None if !page_is_built() => (StatusCode::NOT_FOUND, NOT_BUILT).into_response(),
         None => (StatusCode::NOT_FOUND, "There is no such page.").into_response(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{ErrorKind, Read};
+    use std::net::TcpStream;
+    use std::thread;
+    use std::time::{Duration, Instant};
+
+    use cylindroid::catalogue;
+    use tungstenite::{Message, WebSocket, client};
+
+    use super::*;
+    use crate::viewer::StartBodies;
+
+    const WAIT: Duration = Duration::from_secs(60);
+    const MOST: Duration = Duration::from_millis(800);
+
+    fn connect(url: &str) -> WebSocket<TcpStream> {
+        let stream = TcpStream::connect(url.split('/').nth(2).unwrap()).unwrap();
+        stream.set_read_timeout(Some(WAIT)).unwrap();
+        client(url.replacen("http", "ws", 1) + "ws", stream).unwrap().0
+    }
+
+    /// One client reads, and by that answers pings; the other is gone, but its connection is not.
+    #[test]
+    fn half_open_connections_end() {
+        let robot = catalogue::load("panda").unwrap();
+        let (q, tool) = (robot.home().to_vec(), robot.tool().into());
+        let start = Start::new((robot, "panda"), &q, tool, &[], StartBodies::default()).unwrap();
+        let silence = Silence { ping: Duration::from_millis(50), most: MOST };
+        let place = Place { host: "127.0.0.1", silence, ..Place::default() };
+        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().unwrap();
+        let server = runtime.block_on(Server::of(Arc::new(start), None, place)).unwrap();
+        let url = server.url();
+        runtime.spawn(server.serve_on());
+        let (mut gone, mut there) = (connect(&url), connect(&url));
+        let begin = Instant::now();
+        let end = thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while begin.elapsed() < WAIT {
+                match gone.get_mut().read(&mut bytes) {
+                    Ok(0) => return begin.elapsed(),
+                    Err(error) if error.kind() != ErrorKind::Interrupted => return begin.elapsed(),
+                    _ => {}
+                }
+            }
+            WAIT
+        });
+        let mut pings = 0;
+        while !end.is_finished() || begin.elapsed() < 3 * MOST {
+            pings += u32::from(matches!(there.read().unwrap(), Message::Ping(_)));
+        }
+        let end = end.join().unwrap();
+        assert!((MOST..WAIT).contains(&end), "{end:?}");
+        assert!(pings > 3, "{pings}");
+        there.send(Message::text(r#"{"type": "report", "name": "info"}"#)).unwrap();
+        while !there.read().unwrap().to_text().is_ok_and(|text| text.contains("report")) {}
     }
 }

@@ -30,26 +30,39 @@ const UNSEEN: usize = 2;
 const REPORTS: usize = 4;
 /// A client that receives nothing for this long is disconnected.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// Interval of pings, and maximum silence of a client, including answers to pings.
-const PING: Duration = Duration::from_secs(20);
-const SILENCE: Duration = Duration::from_secs(90);
 /// Work for one client, after which the others have their turn.
 const SHARE: Duration = Duration::from_millis(1);
 
+/// A client that is gone without a word is silent: it answers no pings.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Silence {
+    /// Interval of pings.
+    pub(super) ping: Duration,
+    /// A client that is silent for longer is disconnected.
+    pub(super) most: Duration,
+}
+
+impl Default for Silence {
+    fn default() -> Self {
+        Self { ping: Duration::from_secs(20), most: Duration::from_secs(90) }
+    }
+}
+
 /// Serves a client until it disconnects.
-pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked) {
+pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked, silence: Silence) {
     let (sink, stream) = socket.split();
     let mailbox = Arc::new(Mailbox::default());
     let (answers, waiting) = mpsc::channel(ANSWERS);
     let (seen, drawn) = watch::channel(None);
-    let mut writer = tokio::spawn(write(sink, Arc::clone(&mailbox), waiting, drawn));
+    let mut writer =
+        tokio::spawn(write(sink, Arc::clone(&mailbox), waiting, (drawn, silence.ping)));
     match sessions.find(asked.session) {
         Ok(shared) => {
             let membership = shared.join(mailbox, asked.observes);
             drop(shared);
             let mut client = Client { membership, answers, seen, reports: JoinSet::new() };
             tokio::select! {
-                () = client.serve(stream) => {}
+                () = client.serve(stream, silence.most) => {}
                 _ = &mut writer => return,
             }
         }
@@ -75,14 +88,14 @@ struct Client {
 
 impl Client {
     /// Runs until the client disconnects or stops reading.
-    async fn serve(&mut self, mut stream: SplitStream<WebSocket>) {
-        let mut silent = tokio::time::Instant::now() + SILENCE;
+    async fn serve(&mut self, mut stream: SplitStream<WebSocket>, silence: Duration) {
+        let mut silent = tokio::time::Instant::now() + silence;
         let mut work = Duration::ZERO;
         loop {
             let done = tokio::select! {
                 frame = stream.next() => match frame {
                     Some(Ok(frame)) => {
-                        silent = tokio::time::Instant::now() + SILENCE;
+                        silent = tokio::time::Instant::now() + silence;
                         let begin = Instant::now();
                         let heard = self.hear(&frame);
                         work += begin.elapsed();
@@ -176,10 +189,10 @@ async fn write(
     mut sink: SplitSink<WebSocket, Frame>,
     mailbox: Arc<Mailbox>,
     mut answers: mpsc::Receiver<Frame>,
-    mut seen: watch::Receiver<Option<u64>>,
+    (mut seen, interval): (watch::Receiver<Option<u64>>, Duration),
 ) {
     let mut unseen: VecDeque<u64> = VecDeque::new();
-    let mut ping = tokio::time::Instant::now() + PING;
+    let mut ping = tokio::time::Instant::now() + interval;
     loop {
         let drawn = *seen.borrow_and_update();
         while unseen.front().is_some_and(|seq| drawn.is_some_and(|d| *seq <= d)) {
@@ -188,7 +201,7 @@ async fn write(
         // Clients that never send `seen` get every state.
         let is_ready = drawn.is_none() || unseen.len() < UNSEEN;
         let frame = if ping <= tokio::time::Instant::now() {
-            ping = tokio::time::Instant::now() + PING;
+            ping = tokio::time::Instant::now() + interval;
             Frame::Ping(Bytes::new())
         } else if let Some(text) = mailbox.first() {
             Frame::Text(text)
