@@ -241,6 +241,11 @@ fn what_has_no_effect_is_refused() {
         let error = refused(&[&["move", "panda", "--to", "0.4,0,0.4"], more].concat());
         assert!(error.contains(message), "{more:?}: {error}");
     }
+    let folder = tempfile::tempdir().unwrap();
+    let large = folder.path().join("large.toml");
+    std::fs::write(&large, format!("a = [{}]", "1,".repeat(1 << 19))).unwrap();
+    let error = refused(&["move", "panda", "--tasks", large.to_str().unwrap()]);
+    assert!(error.contains("larger than 1 MiB"), "{error}");
     let error = refused(&["move", "panda", "--tasks", TASKS, "--frame", "link4"]);
     assert!(error.contains("--frame: there is no target"), "{error}");
     let inside = ["move", CELL, "--to", "0.4,0,0.4", "--obstacle", "ball=sphere:0.1@0.31,0,0.5"];

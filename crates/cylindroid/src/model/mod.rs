@@ -63,6 +63,8 @@ pub(crate) use node::{Node, NodeKind};
 pub use parameter::Parameter;
 #[cfg(feature = "formats")]
 pub(crate) use parameter::ParameterValues;
+#[cfg(feature = "sweep")]
+pub(crate) use regular_file::open_regular_file;
 pub use regular_file::read_regular_file;
 pub use report::{Ignored, LoadReport};
 pub use tool_choice::ToolChoice;

@@ -17,23 +17,37 @@ use crate::error::{Error, Result};
 /// [`Error::Io`] for a path that is missing, unreadable, a folder, device, pipe or socket, and for
 /// a file of more than `most` bytes.
 pub fn read_regular_file(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let refuse = |message: String| Error::Io { path: path.to_owned(), action: "read", message };
-    let io = |e: std::io::Error| refuse(e.to_string());
+    let file = open_regular_file(path)?;
+    let mut bytes = Vec::new();
+    // Files of some file systems are longer than their metadata says.
+    let read = file.take(most.saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(|e| refusal(path, e.to_string()))?;
+    if bytes.len() as u64 > most {
+        let limit = most >> 20;
+        let message = format!("it is larger than {limit} MiB, the limit of such a file");
+        return Err(refusal(path, message));
+    }
+    Ok(bytes)
+}
+
+/// Opens a regular file.
+///
+/// # Errors
+/// Those of [`read_regular_file`], but for the size.
+pub(crate) fn open_regular_file(path: &Path) -> Result<File> {
+    let io = |e: std::io::Error| refusal(path, e.to_string());
     // Opening a pipe waits for its writer: the kind of the file is known before.
     let metadata = std::fs::metadata(path).map_err(io)?;
     if metadata.is_dir() {
-        return Err(refuse("it is a folder, name a file in it".to_owned()));
+        return Err(refusal(path, "it is a folder, name a file in it".to_owned()));
     }
     if !metadata.is_file() {
-        return Err(refuse("it is a device, pipe or socket, not a regular file".to_owned()));
+        let message = "it is a device, pipe or socket, not a regular file".to_owned();
+        return Err(refusal(path, message));
     }
-    let mut bytes = Vec::new();
-    // Files of some file systems are longer than their metadata says.
-    let read = File::open(path).map_err(io)?.take(most.saturating_add(1)).read_to_end(&mut bytes);
-    read.map_err(io)?;
-    if bytes.len() as u64 > most {
-        let limit = most >> 20;
-        return Err(refuse(format!("it is larger than {limit} MiB, the limit of such a file")));
-    }
-    Ok(bytes)
+    File::open(path).map_err(io)
+}
+
+fn refusal(path: &Path, message: String) -> Error {
+    Error::Io { path: path.to_owned(), action: "read", message }
 }

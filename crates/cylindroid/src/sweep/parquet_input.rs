@@ -4,7 +4,6 @@
 //! Why so   column by column into rows: Parquet's own rows take ten times as long
 //! Checked  tests/sweep/folder.rs::a_part_is_a_file_of_configurations
 
-use std::fs::File;
 use std::path::Path;
 
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -13,11 +12,12 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use crate::error::Error;
+use crate::model::open_regular_file;
 
 type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Numbers at most: 4 GiB.
-const MOST: u64 = 1 << 29;
+const MOST: usize = 1 << 29;
 
 /// The columns of these names (or `q.` and the name, as in the motions of `move`), a row after the
 /// other.
@@ -29,8 +29,7 @@ pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
     let because = |error: ParquetError| {
         refuse(format!("{error}; files without compression or with Snappy's can be read"))
     };
-    let file = File::open(path).map_err(|error| refuse(error.to_string()))?;
-    let reader = SerializedFileReader::new(file).map_err(because)?;
+    let reader = SerializedFileReader::new(open_regular_file(path)?).map_err(because)?;
     let metadata = reader.metadata().file_metadata();
     let columns: Vec<String> =
         metadata.schema_descr().columns().iter().map(|c| c.path().string()).collect();
@@ -43,63 +42,62 @@ pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
             .ok_or_else(|| refuse(format!("no column '{name}' among {}", columns.join(", "))))?;
         places.push(place);
     }
-    let rows = u64::try_from(metadata.num_rows()).unwrap_or(0);
-    if rows.saturating_mul(names.len() as u64) > MOST {
-        return Err(refuse(format!("{rows} rows are more than fit; split the file")));
-    }
-    let n = names.len();
-    let mut q = vec![0.0; usize::try_from(rows).unwrap_or(0) * n];
-    let (mut first, mut column) = (0, Vec::new());
+    let (n, mut q, mut first) = (names.len(), Vec::new(), 0_usize);
+    // What the file says about its rows may be wrong: only those that are read count.
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(because)?;
-        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let Some(own) = q.get_mut(first * n..(first + rows) * n) else {
-            return Err(refuse("its row groups have more rows than the file".to_owned()));
-        };
-        for (j, (&place, name)) in places.iter().zip(names).enumerate() {
-            let of = group.get_column_reader(place).map_err(because)?;
-            if let Some(row) = read(of, rows, &mut column).map_err(because)? {
-                let row = first + row + 1;
-                return Err(refuse(format!("row {row}, column '{name}': no number")));
-            }
-            own.iter_mut().skip(j).step_by(n).zip(&column).for_each(|(q, x)| *q = *x);
+        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(usize::MAX);
+        let end = first.saturating_add(rows);
+        if end.saturating_mul(n.max(1)) > MOST {
+            return Err(refuse(format!("{end} rows are more than fit; split the file")));
         }
-        first += rows;
+        let mut columns = Vec::with_capacity(n);
+        for (&place, name) in places.iter().zip(names) {
+            let of = group.get_column_reader(place).map_err(because)?;
+            match read(of, rows).map_err(because)? {
+                Ok(column) => columns.push(column),
+                Err(row) => {
+                    let row = first + row + 1;
+                    return Err(refuse(format!("row {row}, column '{name}': no number")));
+                }
+            }
+        }
+        q.reserve(rows * n);
+        q.extend((0..rows).flat_map(|row| columns.iter().map(move |column| column[row])));
+        first = end;
     }
     Ok(q)
 }
 
 /// The numbers of a column, or the first row that has none.
-fn read(
-    column: ColumnReader,
-    rows: usize,
-    out: &mut Vec<f64>,
-) -> Result<Option<usize>, ParquetError> {
+type Numbers = std::result::Result<Vec<f64>, usize>;
+
+fn read(column: ColumnReader, rows: usize) -> Result<Numbers, ParquetError> {
     match column {
-        ColumnReader::DoubleColumnReader(column) => numbers(column, rows, out, |x| x),
-        ColumnReader::FloatColumnReader(column) => numbers(column, rows, out, f64::from),
-        ColumnReader::Int32ColumnReader(column) => numbers(column, rows, out, f64::from),
-        ColumnReader::Int64ColumnReader(column) => numbers(column, rows, out, |x| x as f64),
-        _ => Ok(Some(0)),
+        ColumnReader::DoubleColumnReader(column) => numbers(column, rows, |x| x),
+        ColumnReader::FloatColumnReader(column) => numbers(column, rows, f64::from),
+        ColumnReader::Int32ColumnReader(column) => numbers(column, rows, f64::from),
+        ColumnReader::Int64ColumnReader(column) => numbers(column, rows, |x| x as f64),
+        _ => Ok(if rows == 0 { Ok(Vec::new()) } else { Err(0) }),
     }
 }
 
 fn numbers<T: DataType>(
     mut column: ColumnReaderImpl<T>,
     rows: usize,
-    out: &mut Vec<f64>,
     number: impl Fn(T::T) -> f64,
-) -> Result<Option<usize>, ParquetError> {
-    let (mut values, mut levels, mut read) = (Vec::with_capacity(rows), Vec::new(), 0);
+) -> Result<Numbers, ParquetError> {
+    let (mut values, mut levels, mut read) = (Vec::new(), Vec::new(), 0);
     while read < rows {
         match column.read_records(rows - read, Some(&mut levels), None, &mut values)? {
             (0, ..) => break,
             (records, ..) => read += records,
         }
     }
-    out.clear();
-    out.extend(values.into_iter().map(number));
-    // A gap has a level of its own and no value.
-    let gap = || levels.iter().position(|level| *level == 0).unwrap_or(out.len());
-    Ok((out.len() < rows).then(gap))
+    // A gap has a level of its own and no value; of repeated values a record has several.
+    let gap = || levels.iter().position(|level| *level == 0).unwrap_or(values.len().min(read));
+    if values.len() != rows {
+        return Ok(Err(gap()));
+    }
+    Ok(Ok(values.into_iter().map(number).collect()))
 }

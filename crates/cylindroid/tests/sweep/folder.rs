@@ -156,4 +156,18 @@ fn a_part_is_a_file_of_configurations() {
     let broken = folder.path().join("broken.parquet");
     fs::write(&broken, b"no parquet").unwrap();
     assert!(parquet_configurations(&broken, &names).is_err());
+    // Files of three rows that announce 63: as a whole, and in their only group.
+    let findings = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/findings/parquet");
+    let read = |file| parquet_configurations(&findings.join(file), &["q1", "q2", "q3"]);
+    let expected = [0.1, 1.0, 1.0, 0.2, 2.0, 2.0, 0.3, 3.0, 3.0];
+    assert_eq!(read("rows-of-file.parquet").unwrap(), expected);
+    let error = read("rows-of-group.parquet").unwrap_err().to_string();
+    assert!(error.contains("row 4, column 'q1': no number"), "{error}");
+    if cfg!(unix) {
+        // A pipe waits for its writer.
+        let pipe = folder.path().join("pipe.parquet");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let error = parquet_configurations(&pipe, &names).unwrap_err().to_string();
+        assert!(error.contains("not a regular file"), "{error}");
+    }
 }

@@ -1,11 +1,11 @@
 //! Files of tasks: one `[[task]]` table for each, and tables of half-spaces and boxes.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
 use cylindroid::control::{HalfSpace, MotionTask, PoseTolerance, Target, Task, TaskObjective};
+use cylindroid::model::read_regular_file;
 use cylindroid::spatial::{Rpy, Twist};
 use cylindroid::{EndEffector, Error, FileError, Mechanism, Pose, ReferenceFrame, State, Vec3};
 use serde::Deserialize;
@@ -24,6 +24,9 @@ struct File {
     #[serde(default, rename = "box")]
     boxes: Vec<Spanned<super::walls::Box>>,
 }
+
+/// The largest file of tasks (bytes): 1 MiB, thousands of tasks.
+const LARGEST: u64 = 1 << 20;
 
 /// All keys that a task can have.
 #[derive(Debug, Deserialize)]
@@ -266,11 +269,8 @@ pub(crate) fn load(
     start: &State,
     usual: &MotionTask,
 ) -> anyhow::Result<(Vec<MotionTask>, Vec<HalfSpace>)> {
-    let refuse = |error: std::io::Error| cannot_read(path, &error.to_string());
-    if !fs::metadata(path).map_err(refuse)?.is_file() {
-        return Err(cannot_read(path, "it is not a regular file").into());
-    }
-    let text = fs::read_to_string(path).map_err(refuse)?;
+    let text = String::from_utf8(read_regular_file(path, LARGEST)?)
+        .map_err(|_| cannot_read(path, "it is not UTF-8"))?;
     let at = |span: Range<usize>, message: String| error(path, &text, span, message);
     let file: File = toml::from_str(&text)
         .map_err(|error| at(error.span().unwrap_or(0..0), error.message().to_owned()))?;
