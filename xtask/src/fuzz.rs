@@ -1,5 +1,9 @@
 //! Random input for as long as one likes: files of every format, messages of the viewer, command
-//! lines, calls from Python, steps of servos.
+//! lines, calls from Python, steps of servos; or inputs that reach further code (`guided`).
+
+mod dictionary;
+mod guided;
+mod seeds;
 
 use std::time::Instant;
 
@@ -15,22 +19,36 @@ const TESTS: [(&str, &str, &str, u64); 2] =
 /// Steps of servos in a second of a machine with two cores, roughly.
 const STEPS: f64 = 20_000.0;
 
-/// `--minutes` in all (10) and `--seed` of the first round (0).
+/// `--minutes` in all (10) and `--seed` of the first round (0); with `--guided` by coverage, of all
+/// targets or those of `--target`.
 ///
 /// # Errors
 /// A panic, a wrong exit code, an answer that does not come, a limit that is left: with the seed
-/// that repeats it.
+/// that repeats it, or the file.
 pub(crate) fn task(arguments: &[String]) -> Result<()> {
-    let (mut minutes, mut seed) = (10.0, 0);
-    for pair in arguments.chunks(2) {
-        match pair {
-            [flag, value] if flag == "--minutes" => minutes = value.parse().context("--minutes")?,
-            [flag, value] if flag == "--seed" => seed = value.parse().context("--seed")?,
-            _ => bail!("fuzz has the options --minutes M and --seed N"),
+    let (mut minutes, mut seed, mut is_guided, mut targets) = (10.0, 0, false, Vec::new());
+    let mut words = arguments.iter();
+    while let Some(flag) = words.next() {
+        if flag == "--guided" {
+            is_guided = true;
+            continue;
+        }
+        let value = words.next();
+        match (flag.as_str(), value) {
+            ("--minutes", Some(value)) => minutes = value.parse().context("--minutes")?,
+            ("--seed", Some(value)) => seed = value.parse().context("--seed")?,
+            ("--target", Some(value)) => targets.push(value.clone()),
+            _ => bail!("fuzz has the options --minutes M, --seed N, --guided and --target NAME"),
         }
     }
     if !(minutes > 0.0 && f64::is_finite(minutes)) {
         bail!("--minutes = {minutes}: a positive number");
+    }
+    if is_guided {
+        return guided::task(minutes, seed, &targets);
+    }
+    if !targets.is_empty() {
+        bail!("--target needs --guided");
     }
     let tests: u64 = TESTS.iter().map(|test| test.3).sum();
     // Calls from Python and steps of servos take two shares.

@@ -72,6 +72,10 @@ cargo xtask <task>
   fuzz [--minutes M] [--seed N]
             for 10 minutes: random mutations of files of every format, messages of the viewer,
             command lines and calls from Python, and steps of servos (release build)
+  fuzz --guided [--minutes M] [--seed N] [--target NAME]
+            the same by coverage (libFuzzer, needs a C++ compiler): files of every format, messages
+            of the viewer, the bounded solver against its conditions of optimality, servo steps;
+            inputs are kept in target/fuzz
   mutants [--sample N] [--seed S] [--minutes M]
             changes one operator, sign, number or function of the mathematics at a time, and prints
             which of 40 changes the tests catch, with an interval

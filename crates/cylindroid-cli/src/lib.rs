@@ -7,6 +7,8 @@ mod args;
 mod commands;
 mod diagnostic;
 mod exit;
+#[cfg(any(test, fuzzing))]
+mod fed;
 mod flags;
 mod number_file;
 mod obstacle;
@@ -20,6 +22,28 @@ mod viewer;
 pub mod show {
     //! The viewer inside another program: a page that follows it.
     pub use crate::viewer::{Drag, Drawing, DrawnShape, ShowOptions, Viewer};
+}
+
+#[cfg(fuzzing)]
+#[doc(hidden)]
+pub mod fuzzing {
+    //! What fuzz targets call.
+    use std::path::Path;
+
+    /// Messages of the viewer.
+    pub fn messages(bytes: &[u8]) {
+        crate::viewer::feed(bytes);
+    }
+
+    /// A file of numbers.
+    pub fn numbers(path: &Path) {
+        crate::fed::numbers(path);
+    }
+
+    /// A file of tasks.
+    pub fn tasks(path: &Path) {
+        crate::fed::tasks(path);
+    }
 }
 
 use std::ffi::OsString;

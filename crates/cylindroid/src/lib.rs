@@ -84,6 +84,17 @@ pub use model::{FrameId, Mechanism};
 pub use screws::{Screw, ScrewSystem};
 pub use spatial::{Pose, Rotation, Twist, Vec3, Wrench};
 
+#[cfg(fuzzing)]
+#[doc(hidden)]
+pub mod fuzzing {
+    //! What fuzz targets call beside the public functions.
+
+    /// Solves a problem of the bounded solver that bytes describe, and checks its optimality.
+    pub fn solver(bytes: &[u8]) {
+        crate::control::check_solver(bytes);
+    }
+}
+
 /// The code of the README and of the book is compiled and run.
 #[cfg(doctest)]
 mod book {

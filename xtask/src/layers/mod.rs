@@ -7,7 +7,7 @@ mod line;
 mod modules;
 mod page;
 mod rust;
-mod source;
+pub(crate) mod source;
 
 use std::path::Path;
 
@@ -31,7 +31,8 @@ const PAGE: &str = "viewer/src";
 /// The most lines that a file may have.
 const LONGEST_FILE: usize = 500;
 /// Where files are so short, tests and benchmarks among them.
-const SHORT: [&str; 5] = ["crates", "xtask/src", "benches", "viewer/src", "viewer/tests"];
+const SHORT: [&str; 6] =
+    ["crates", "fuzz/src", "xtask/src", "benches", "viewer/src", "viewer/tests"];
 
 /// Checks everything, or with `--circles` and `--checked` lists one kind of faults.
 ///

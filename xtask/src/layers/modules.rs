@@ -250,13 +250,17 @@ fn names(path: &syn::Path) -> Vec<String> {
     path.segments.iter().map(|segment| segment.ident.to_string()).collect()
 }
 
-/// `#[test]`, `#[cfg(test)]`, `#[cfg(all(test, ...))]`.
+/// `#[test]`, `#[cfg(test)]`, `#[cfg(all(test, ...))]`, `#[cfg(fuzzing)]`.
 fn is_test(attribute: &Attribute) -> bool {
     let Meta::List(list) = &attribute.meta else {
         return attribute.path().is_ident("test");
     };
     attribute.path().is_ident("cfg")
-        && list.tokens.to_string().split(|c: char| !c.is_alphanumeric()).any(|word| word == "test")
+        && list
+            .tokens
+            .to_string()
+            .split(|c: char| !c.is_alphanumeric())
+            .any(|word| ["test", "fuzzing"].contains(&word))
         && !list.tokens.to_string().contains("not")
 }
 

@@ -18,7 +18,7 @@ pub(super) fn text_of(file: &Path) -> Result<String> {
 ///
 /// # Errors
 /// A folder that cannot be read.
-pub(super) fn files(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>> {
+pub(crate) fn files(folder: &Path, endings: &[&str]) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let path = entry?.path();

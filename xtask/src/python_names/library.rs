@@ -167,11 +167,11 @@ fn is_public(visibility: &Visibility) -> bool {
     matches!(visibility, Visibility::Public(_))
 }
 
-/// `#[cfg(test)]`, `#[cfg(doctest)]`.
+/// `#[cfg(test)]`, `#[cfg(doctest)]`, `#[cfg(fuzzing)]`.
 fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|attribute| {
         let syn::Meta::List(list) = &attribute.meta else { return false };
         attribute.path().is_ident("cfg")
-            && ["test", "doctest"].contains(&list.tokens.to_string().as_str())
+            && ["test", "doctest", "fuzzing"].contains(&list.tokens.to_string().as_str())
     })
 }

@@ -9,8 +9,8 @@
 //! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it, `opened` those of further
 //! models;
 //! `socket` talks to one client; `safety` protects `server`, which listens; `embedded` is all of it
-//! inside another program, with its `drawings` and `drags`. `typescript` writes the messages as types
-//! of the page. All mathematics is in the library.
+//! inside another program, with its `drawings` and `drags`; `fed` is a client of tests. `typescript`
+//! writes the messages as types of the page. All mathematics is in the library.
 
 mod assets;
 mod avoidance;
@@ -22,6 +22,8 @@ mod drags;
 mod drawings;
 mod elsewhere;
 mod embedded;
+#[cfg(any(test, fuzzing))]
+mod fed;
 mod inverse_parameters;
 mod json;
 mod mailbox;
@@ -51,5 +53,7 @@ pub(crate) use self::bodies::check_count;
 pub use self::drags::Drag;
 pub use self::drawings::{Drawing, DrawnShape};
 pub use self::embedded::{ShowOptions, Viewer};
+#[cfg(fuzzing)]
+pub(crate) use self::fed::feed;
 pub(crate) use self::server::Server;
 pub(crate) use self::start::{Start, StartBodies};

@@ -19,6 +19,9 @@ mod servo;
 mod solver;
 mod tasks;
 
+#[cfg(fuzzing)]
+pub(crate) use solver::hierarchy::optimality::check as check_solver;
+
 pub use crate::task::Task;
 pub use laws::{
     Admittance, AdmittanceGain, AuthorityTimes, HybridCommand, HybridController, HybridInput,

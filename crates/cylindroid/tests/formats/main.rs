@@ -25,6 +25,7 @@ mod mjcf;
 mod mjcf_copies;
 mod mujoco;
 mod mutated_files;
+mod mutation;
 mod mutations;
 mod order;
 mod parameters;
@@ -33,6 +34,7 @@ mod sdf;
 mod srdf;
 mod tool;
 mod urdf;
+mod use_of_files;
 
 use std::path::{Path, PathBuf};
 

@@ -63,3 +63,15 @@ fn bodies_stay_apart_where_distances_contradict_one_another() {
         assert!(tally.steps == 500 && tally.violations.is_empty(), "{:?}", tally.violations);
     }
 }
+
+/// Rounds that a fuzzer found, and a few at random.
+#[test]
+fn findings_stay_mended() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/findings/servo");
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        rounds::check(&std::fs::read(entry.unwrap().path()).unwrap());
+    }
+    for seed in 0..20_u8 {
+        rounds::check(&[seed, 0, seed, seed.wrapping_mul(31), 77, 5, seed, 9]);
+    }
+}

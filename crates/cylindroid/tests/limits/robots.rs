@@ -5,19 +5,40 @@ use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Lim
 use cylindroid::spatial::{Mat3, Rotation};
 use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
-/// SplitMix64.
-pub(crate) struct Random(pub(crate) u64);
+/// The bytes that are given, then SplitMix64.
+pub(crate) struct Random<'b> {
+    state: u64,
+    bytes: &'b [u8],
+}
 
-impl Random {
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+impl<'b> Random<'b> {
+    pub(crate) fn seeded(state: u64) -> Self {
+        Self { state, bytes: &[] }
+    }
+
+    pub(crate) fn of_bytes(bytes: &'b [u8]) -> Self {
+        Self { state: 0, bytes }
+    }
+
+    fn next(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     }
 
+    /// Two bytes.
+    fn given(&mut self) -> Option<u16> {
+        let (two, rest) = self.bytes.split_first_chunk()?;
+        self.bytes = rest;
+        Some(u16::from_le_bytes(*two))
+    }
+
     pub(crate) fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
+        match self.given() {
+            Some(given) => usize::from(given) % n,
+            None => (self.next() % n as u64) as usize,
+        }
     }
 
     /// True once in `n` times.
@@ -26,7 +47,11 @@ impl Random {
     }
 
     pub(crate) fn within(&mut self, lower: f64, upper: f64) -> f64 {
-        lower + (upper - lower) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        let (share, of) = match self.given() {
+            Some(given) => (f64::from(given), f64::from(u16::MAX)),
+            None => ((self.next() >> 11) as f64, (1_u64 << 53) as f64),
+        };
+        lower + (upper - lower) * share / of
     }
 
     /// A power of ten.
@@ -66,7 +91,7 @@ impl ClampTo for f64 {
     }
 }
 
-fn limits(random: &mut Random) -> Limits {
+fn limits(random: &mut Random<'_>) -> Limits {
     let mut l = Limits {
         lower: -random.power(-1.0, 0.6),
         upper: random.power(-1.0, 0.6),
@@ -92,7 +117,7 @@ fn limits(random: &mut Random) -> Limits {
 }
 
 /// A tree of one to nine joints; with shapes on all links, a chain of ordinary joints.
-pub(crate) fn robot(random: &mut Random, with_shapes: bool) -> Mechanism {
+pub(crate) fn robot(random: &mut Random<'_>, with_shapes: bool) -> Mechanism {
     let n = if with_shapes { 3 + random.below(4) } else { 1 + random.below(9) };
     let mut builder = Mechanism::builder("random");
     for i in 0..n {
@@ -157,7 +182,7 @@ pub(crate) fn robot(random: &mut Random, with_shapes: bool) -> Mechanism {
 }
 
 /// A model of the catalogue, serial or with loops.
-pub(crate) fn of_catalogue(random: &mut Random, closed: bool) -> Mechanism {
+pub(crate) fn of_catalogue(random: &mut Random<'_>, closed: bool) -> Mechanism {
     let names = catalogue::names();
     loop {
         let robot = catalogue::load(names[random.below(names.len())]).unwrap();

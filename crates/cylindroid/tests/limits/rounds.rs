@@ -12,8 +12,8 @@ use cylindroid::{Mechanism, Pose, Servo, ServoOptions};
 use crate::robots::{ClampTo, Random, of_catalogue, robot};
 use crate::watch::{Tally, Watch};
 
-/// Steps of a round.
-const STEPS: u64 = 500;
+/// Steps of a round; few where a fuzzer chooses them.
+const STEPS: u64 = if cfg!(fuzzing) { 60 } else { 500 };
 
 /// Steps between two looks at all distances.
 const LOOK: u64 = 5;
@@ -56,35 +56,52 @@ impl Kind {
     }
 }
 
+/// The round of this number.
 pub(crate) fn run(kind: Kind, seed: u64) -> Tally {
-    let mut random = Random(seed.wrapping_mul(0xd134_2543_de82_ef95));
-    let mut tally = match kind {
-        Kind::Catalogue | Kind::Closed => {
-            let robot = of_catalogue(&mut random, kind == Kind::Closed);
-            one_task(&robot, &mut random)
-        }
-        Kind::Random => one_task(&robot(&mut random, false), &mut random),
-        Kind::Jerks => {
-            let way = random.below(4);
-            let robot = robot(&mut random, way == 3);
-            let robot = with_jerks(&robot, &mut random);
-            match way {
-                0 | 1 => one_task(&robot, &mut random),
-                2 => many_tasks(&robot, &mut random),
-                _ => distances(&robot, &mut random),
-            }
-        }
-        Kind::Tasks if random.once_in(5) => closed_tasks(&mut random),
-        Kind::Tasks => many_tasks(&robot(&mut random, false), &mut random),
-        Kind::Distances => distances(&robot(&mut random, true), &mut random),
-    };
-    tally.rounds = 1;
+    let mut random = Random::seeded(seed.wrapping_mul(0xd134_2543_de82_ef95));
+    let mut tally = run_with(kind, &mut random);
     tally.violations.iter_mut().for_each(|v| *v = format!("round {seed}, {v}"));
     tally
 }
 
+/// The round that bytes describe; nothing is left or in contact.
+///
+/// # Panics
+/// Otherwise.
+pub(crate) fn check(bytes: &[u8]) {
+    let mut random = Random::of_bytes(bytes);
+    let kind = Kind::ALL[random.below(Kind::ALL.len())];
+    let tally = run_with(kind, &mut random);
+    assert!(tally.violations.is_empty(), "{}: {:?}", kind.name(), tally.violations);
+}
+
+fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
+    let mut tally = match kind {
+        Kind::Catalogue | Kind::Closed => {
+            let robot = of_catalogue(random, kind == Kind::Closed);
+            one_task(&robot, random)
+        }
+        Kind::Random => one_task(&robot(random, false), random),
+        Kind::Jerks => {
+            let way = random.below(4);
+            let robot = robot(random, way == 3);
+            let robot = with_jerks(&robot, random);
+            match way {
+                0 | 1 => one_task(&robot, random),
+                2 => many_tasks(&robot, random),
+                _ => distances(&robot, random),
+            }
+        }
+        Kind::Tasks if random.once_in(5) => closed_tasks(random),
+        Kind::Tasks => many_tasks(&robot(random, false), random),
+        Kind::Distances => distances(&robot(random, true), random),
+    };
+    tally.rounds = 1;
+    tally
+}
+
 /// The same robot with limits of all jerks.
-fn with_jerks(robot: &Mechanism, random: &mut Random) -> Mechanism {
+fn with_jerks(robot: &Mechanism, random: &mut Random<'_>) -> Mechanism {
     let limits = robot.coordinates().iter().map(|c| {
         let jerk = Some(random.power(0.0, 4.0));
         (c.name.as_str(), JointLimits { jerk, ..JointLimits::default() })
@@ -98,7 +115,7 @@ fn takes_pushes(robot: &Mechanism) -> bool {
 }
 
 /// Something moves the robot: anywhere within the limits, or a little.
-fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random) {
+fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random<'_>) {
     let anywhere = random.configuration(robot);
     let share = if random.once_in(3) { 1.0 } else { random.power(-6.0, -1.0) };
     for ((x, to), c) in q.iter_mut().zip(anywhere).zip(robot.coordinates()) {
@@ -111,7 +128,7 @@ fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random) {
 }
 
 /// A target near the pose, far away, beyond all numbers of robots, or the pose turned by a half.
-fn target(of: Pose, random: &mut Random) -> Pose {
+fn target(of: Pose, random: &mut Random<'_>) -> Pose {
     match random.below(8) {
         0 => random.pose(1e6),
         1 => random.pose(1.0),
@@ -124,7 +141,7 @@ fn target(of: Pose, random: &mut Random) -> Pose {
     }
 }
 
-fn one_task(robot: &Mechanism, random: &mut Random) -> Tally {
+fn one_task(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     let mut options = ServoOptions::new(robot);
     options.dt = random.power(-4.0, -1.3);
     let gain = random.power(-1.0, 0.28) / options.dt;
@@ -196,11 +213,11 @@ fn closed_step(robot: &Mechanism, velocities: &[f64], q: &[f64], step: u64, tall
     }
 }
 
-fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<MotionTask> {
+fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random<'_>) -> Vec<MotionTask> {
     let state = robot.state(q).unwrap();
     let count = 1 + random.below(4);
     let frames = robot.frames().len();
-    let task = |i: usize, random: &mut Random| {
+    let task = |i: usize, random: &mut Random<'_>| {
         let frame = robot.frame(&robot.frames()[random.below(frames)].name).unwrap();
         let end_effector = frame.into();
         let components = [Task::POSE, Task::POSITION, Task::POINTING][random.below(3)];
@@ -234,7 +251,7 @@ fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<MotionTask> {
     (0..count).map(|i| task(i, random)).collect()
 }
 
-fn many_tasks(robot: &Mechanism, random: &mut Random) -> Tally {
+fn many_tasks(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     let mut options = TaskServoOptions::new(robot);
     options.dt = random.power(-3.5, -1.8);
     options.acceleration = random.power(-1.0, 4.0);
@@ -248,7 +265,7 @@ fn many_tasks(robot: &Mechanism, random: &mut Random) -> Tally {
 }
 
 /// Many tasks of a closed chain: the velocities of its actuated joints have limits.
-fn closed_tasks(random: &mut Random) -> Tally {
+fn closed_tasks(random: &mut Random<'_>) -> Tally {
     let robot = of_catalogue(random, true);
     let mut options = TaskServoOptions::new(&robot);
     options.dt = random.power(-3.5, -2.3);
@@ -277,7 +294,7 @@ fn task_servo(
     mut servo: TaskServo,
     q: &mut [f64],
     watch: &mut Watch,
-    random: &mut Random,
+    random: &mut Random<'_>,
     mut look: impl FnMut(u64, &[f64]) -> Result<(), String>,
 ) -> Tally {
     let robot = servo.mechanism().clone();
@@ -311,7 +328,7 @@ fn task_servo(
 }
 
 /// A robot among obstacles: pairs that start apart stay apart.
-fn distances(robot: &Mechanism, random: &mut Random) -> Tally {
+fn distances(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     let options = CollisionOptions { samples: 20, ..CollisionOptions::default() };
     let mut model = CollisionModel::new(robot, &options).unwrap();
     for i in 0..1 + random.below(3) {

@@ -64,7 +64,7 @@ pub(in crate::control) struct Precision {
 
 impl Precision {
     /// Up to rounding.
-    #[cfg(test)]
+    #[cfg(any(test, fuzzing))]
     pub(in crate::control) const EXACT: Self = Self { rank: 1e-11, release: 1e-11 };
 }
 

@@ -120,7 +120,7 @@ impl ScaledLevel {
 
 impl ActiveSet {
     /// The least-squares solution of a level within what the levels before leave.
-    #[cfg(test)]
+    #[cfg(any(test, fuzzing))]
     pub(in crate::control) fn solve(&mut self, level: &mut Level, precision: Precision) {
         level.scale = level.rows.frobenius_norm();
         self.minimise(Objective::Rows(level), precision);
@@ -171,5 +171,9 @@ impl ActiveSet {
     }
 }
 
+#[cfg(any(test, fuzzing))]
+pub(in crate::control) mod optimality;
+#[cfg(any(test, fuzzing))]
+mod problem;
 #[cfg(test)]
 mod tests;

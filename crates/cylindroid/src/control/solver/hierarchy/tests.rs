@@ -6,104 +6,12 @@ use clarabel::solver::{
     ZeroConeT,
 };
 
-use super::super::active_set::{ActiveSet, FEASIBLE, Level, Precision, Whole};
-use super::super::inequalities::Inequalities;
-use super::ScaledLevel;
+use super::super::active_set::{FEASIBLE, Level, Precision, Whole};
+use super::problem::{Problem, Random};
+use super::{ScaledLevel, optimality};
 use crate::linalg::{Matrix, norm};
-use crate::scalar::uniform;
-
-/// Numbers of a fixed sequence.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        uniform(&mut self.0)
-    }
-
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        ((self.unit() * n as f64) as usize).min(n - 1)
-    }
-}
-
-/// A problem: inequalities as dense rows with bounds, and levels.
-struct Problem {
-    n: usize,
-    boxed: bool,
-    rows: Vec<Vec<f64>>,
-    lower: Vec<f64>,
-    upper: Vec<f64>,
-    levels: Vec<(Matrix, Vec<f64>)>,
-}
 
 impl Problem {
-    /// Of any shape: rank-deficient, over- and underdetermined levels, repeated rows, bounds that
-    /// are equal, tiny, infinite or far away.
-    fn random(random: &mut Random) -> Self {
-        let n = 1 + random.below(9);
-        let boxed = random.below(4) > 0;
-        let more = random.below(if boxed { 4 } else { 10 });
-        let mut rows: Vec<Vec<f64>> = Vec::new();
-        if boxed {
-            rows.extend((0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()));
-        }
-        for _ in 0..more {
-            let row = match random.below(6) {
-                0 if !rows.is_empty() => rows[random.below(rows.len())].clone(),
-                1 => (0..n).map(|_| f64::from(random.below(3) as u32) - 1.0).collect(),
-                _ => (0..n).map(|_| random.signed()).collect(),
-            };
-            rows.push(row);
-        }
-        // Feasible by construction, in the middle or at the border.
-        let inside: Vec<f64> = (0..n).map(|_| 0.3 * random.signed()).collect();
-        let (mut lower, mut upper) = (Vec::new(), Vec::new());
-        for row in &rows {
-            let value: f64 = row.iter().zip(&inside).map(|(a, b)| a * b).sum();
-            let mut room = || match random.below(8) {
-                0 => f64::INFINITY,
-                1 => 0.0,
-                2 => 1e-6 * random.unit(),
-                3 => 100.0,
-                _ => random.unit(),
-            };
-            let (below, above) = (room(), room());
-            lower.push(value - below);
-            upper.push(value + above);
-        }
-        let levels = (0..1 + random.below(3))
-            .map(|_| {
-                let m = 1 + random.below(7);
-                let a = match random.below(4) {
-                    0 => {
-                        let rank = 1 + random.below(m.min(n));
-                        let [b, c] = [(m, rank), (rank, n)]
-                            .map(|(r, c)| Matrix::from_fn(r, c, |_, _| random.signed()));
-                        &b * &c
-                    }
-                    1 => Matrix::from_fn(m, n, |_, _| f64::from(random.below(3) as u32) - 1.0),
-                    _ => Matrix::from_fn(m, n, |_, _| random.signed()),
-                };
-                (a, (0..m).map(|_| 3.0 * random.signed()).collect())
-            })
-            .collect();
-        Self { n, boxed, rows, lower, upper, levels }
-    }
-
-    fn active_set(&self) -> ActiveSet {
-        let first = if self.boxed { self.n } else { 0 };
-        let mut inequalities = Inequalities::new(self.n, self.boxed, self.rows.len() - first);
-        for (place, row) in self.rows[first..].iter().enumerate() {
-            inequalities.set_row(place, |j| row[j]);
-        }
-        inequalities.lower.copy_from_slice(&self.lower);
-        inequalities.upper.copy_from_slice(&self.upper);
-        ActiveSet::new(self.n, inequalities)
-    }
-
     fn assert_feasible(&self, y: &[f64], what: &str) {
         for (i, row) in self.rows.iter().enumerate() {
             let value: f64 = row.iter().zip(y).map(|(a, b)| a * b).sum();
@@ -207,7 +115,7 @@ fn violation(problem: &Problem, kept: &[(Vec<f64>, f64)], y: &[f64]) -> f64 {
 /// that point keeps to its rows, and feasible itself.
 #[test]
 fn levels_are_the_optima_of_clarabel() {
-    let mut random = Random(11);
+    let mut random = Random::seeded(11);
     let (mut compared, mut better) = (0, 0);
     let mut rounds = 0;
     for round in 0..10_000 {
@@ -257,7 +165,7 @@ fn levels_are_the_optima_of_clarabel() {
 /// The nearest point of the polyhedron is nearer than any other point found.
 #[test]
 fn the_start_is_the_nearest_feasible_point() {
-    let mut random = Random(5);
+    let mut random = Random::seeded(5);
     for round in 0..500 {
         let mut problem = Problem::random(&mut random);
         let guess: Vec<f64> = (0..problem.n).map(|_| 3.0 * random.signed()).collect();
@@ -277,7 +185,7 @@ fn the_start_is_the_nearest_feasible_point() {
 /// A scaled level keeps its direction exactly, at the largest scale of a linear program.
 #[test]
 fn scaled_levels_keep_their_direction() {
-    let mut random = Random(23);
+    let mut random = Random::seeded(23);
     let (mut straight, mut compared) = (0, 0);
     for round in 0..2000 {
         let mut problem = Problem::random(&mut random);
@@ -327,7 +235,7 @@ fn scaled_levels_keep_their_direction() {
 /// to the next as one that is minimised: after the last all points agree.
 #[test]
 fn free_levels_are_those_of_the_active_set() {
-    let mut random = Random(29);
+    let mut random = Random::seeded(29);
     let (mut free, mut other, mut beside_bounds) = (0, 0, 0);
     for _ in 0..4000 {
         let problem = Problem::random(&mut random);
@@ -366,4 +274,19 @@ fn free_levels_are_those_of_the_active_set() {
     }
     let counts = format!("{free} free, {beside_bounds} of them at bounds, {other} others");
     assert!(free > 300 && other > 3000 && beside_bounds > 100, "{counts}");
+}
+
+/// Bytes that made the solver fail, and a few at random.
+#[test]
+fn findings_stay_mended() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/findings/solver");
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        optimality::check(&std::fs::read(entry.unwrap().path()).unwrap());
+    }
+    let mut random = Random::seeded(41);
+    for _ in 0..2000 {
+        let length = random.below(400);
+        let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
+        optimality::check(&bytes);
+    }
 }

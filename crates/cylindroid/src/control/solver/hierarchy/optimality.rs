@@ -1,0 +1,185 @@
+//! The solver against its own conditions of optimality, on problems that bytes describe.
+//!
+//! Formula  f(y) - f* <= max -f'(y) d over the steps d within the bounds that leave the levels before
+//!          as they are (the gap of Frank & Wolfe): a linear program, solved by another method than
+//!          the active set
+//! Valid    steps of at most `FAR` in each unknown; rows that bind to less than 1e-12 count as kept;
+//!          points far away, where rows without bounds nearly depend on others, to their rounding
+//! Why so   a referee in a fuzzer must be fast and must not share decisions of ranks with the solver:
+//!          only directions that the kept rows lose to rounding are tried
+//! Source   Jaggi 2013, eq. 2
+//! Checked  src/control/solver/hierarchy/tests.rs::findings_stay_mended
+
+use super::super::active_set::{ActiveSet, FEASIBLE, Level, Precision, Whole};
+use super::ScaledLevel;
+use super::problem::{Problem, Random};
+use crate::linalg::{
+    BoundedLinearProgram, ColumnSpace, Interval, Matrix, Objective, Threshold, norm,
+};
+
+/// Steps in each unknown.
+const FAR: f64 = 4.0;
+
+/// The largest gap, relative to one, the square of the target and the slope: rows that depend on
+/// others up to 1e-10 hold directions to 1e-6.
+const GAP: f64 = 1e-6;
+
+/// Rounding of a row times the point, relative to its terms.
+const ROUNDING: f64 = 1e-12;
+
+/// Solves the problem that the bytes describe, level by level, and checks every point.
+pub(crate) fn check(bytes: &[u8]) {
+    let mut random = Random::of_bytes(bytes);
+    let scaled = random.below(3) == 0;
+    let mut problem = Problem::random(&mut random);
+    if scaled {
+        check_scaled(&mut problem, &mut random);
+    } else {
+        check_levels(&problem, &mut random);
+    }
+}
+
+fn check_levels(problem: &Problem, random: &mut Random<'_>) {
+    let mut set = problem.active_set();
+    let guess: Vec<f64> = (0..problem.n).map(|_| 3.0 * random.signed()).collect();
+    assert!(set.start(&guess), "no feasible point found");
+    check_kept(problem, &[], &[], &set);
+    check_nearest(problem, &[], &set, &guess, "start");
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    let mut values: Vec<f64> = Vec::new();
+    for (a, b) in &problem.levels {
+        let mut level = Level::new(a.rows(), problem.n);
+        level.rows = a.clone();
+        let share = [1.0, 0.03][random.below(2)];
+        level.target = b.iter().map(|x| share * x).collect();
+        let freely = random.below(2) == 0;
+        if !freely || set.solve_freely(&mut level, 1e-3) != Whole::Performed {
+            set.solve(&mut level, Precision::EXACT);
+        }
+        check_kept(problem, &kept, &values, &set);
+        let left = level.left(set.point()).to_vec();
+        let along: Vec<f64> = a.transpose().mul_vec(&left);
+        check_gain(problem, &kept, &set, &along, norm(&level.target), "level");
+        kept.extend((0..a.rows()).map(|i| (0..problem.n).map(|j| a[(i, j)]).collect()));
+        values.extend(a.mul_vec(set.point()));
+    }
+    let goal: Vec<f64> = (0..problem.n).map(|_| random.signed()).collect();
+    set.approach(&goal, Precision::EXACT);
+    check_kept(problem, &kept, &values, &set);
+    check_nearest(problem, &kept, &set, &goal, "approach");
+}
+
+/// A target that a motion without limits reaches: its direction is kept, at the largest scale.
+fn check_scaled(problem: &mut Problem, random: &mut Random<'_>) {
+    // Rest is permitted, as for a robot.
+    for (l, u) in problem.lower.iter_mut().zip(&mut problem.upper) {
+        (*l, *u) = (l.min(0.0), u.max(0.0));
+    }
+    let a = problem.levels[0].0.clone();
+    let through: Vec<f64> = (0..problem.n).map(|_| 2.0 * random.signed()).collect();
+    let target = a.mul_vec(&through);
+    let size = norm(&target);
+    let mut set = problem.active_set();
+    assert!(set.start(&vec![0.0; problem.n]), "rest is not found");
+    let mut level = ScaledLevel::new(vec![0], a.rows(), problem.n);
+    level.whole.rows = a.clone();
+    level.whole.target.copy_from_slice(&target);
+    set.solve_scaled(&mut level, Precision::EXACT, |_, _| false);
+    check_kept(problem, &[], &[], &set);
+    let scale = level.scales[0];
+    let left: Vec<f64> =
+        a.mul_vec(set.point()).iter().zip(&target).map(|(x, b)| x - scale * b).collect();
+    let rounding = ROUNDING * a.frobenius_norm() * norm(set.point());
+    assert!(norm(&left) < 1e-9 * (1.0 + size) + rounding, "the direction of {target:?} is lost");
+    if size < 1e-6 || scale >= 1.0 - 1e-9 {
+        return;
+    }
+    let along = a.transpose().mul_vec(&target).iter().map(|x| x / size).collect::<Vec<f64>>();
+    let across = |k: usize| {
+        (0..problem.n).map(|j| a[(k, j)] - target[k] / size * along[j]).collect::<Vec<f64>>()
+    };
+    let across: Vec<Vec<f64>> = (0..a.rows()).map(across).collect();
+    check_gain(problem, &across, &set, &along, size, "scaled");
+}
+
+/// Levels before keep their values, and all bounds are kept.
+fn check_kept(problem: &Problem, kept: &[Vec<f64>], values: &[f64], set: &ActiveSet) {
+    let y = set.point();
+    assert!(y.iter().all(|x| x.is_finite()), "{y:?}");
+    let rows = problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper));
+    for (row, (lower, upper)) in rows {
+        let (now, size) = product(row, y);
+        let excess = (now - upper).max(lower - now);
+        let bound = lower.abs().min(upper.abs());
+        let slack = 10.0 * FEASIBLE * (1.0 + bound + norm(row)) + ROUNDING * size;
+        assert!(excess <= slack, "{row:?} beyond its bound by {excess:e}");
+    }
+    for (row, value) in kept.iter().zip(values) {
+        let (now, size) = product(row, y);
+        let slack = 1e-9 * (1.0 + value.abs()) + ROUNDING * size;
+        assert!((now - value).abs() <= slack, "a level moved from {value:e} to {now:e}");
+    }
+}
+
+/// `row . y`, and the size of its terms.
+fn product(row: &[f64], y: &[f64]) -> (f64, f64) {
+    let terms = row.iter().zip(y).map(|(a, y)| a * y);
+    (terms.clone().sum(), terms.map(f64::abs).sum())
+}
+
+/// The nearest point to a goal.
+fn check_nearest(problem: &Problem, kept: &[Vec<f64>], set: &ActiveSet, goal: &[f64], what: &str) {
+    let along: Vec<f64> = goal.iter().zip(set.point()).map(|(g, y)| g - y).collect();
+    check_gain(problem, kept, set, &along, norm(goal), what);
+}
+
+/// No step gains along the negative gradient; `size` is that of the target.
+fn check_gain(
+    problem: &Problem,
+    kept: &[Vec<f64>],
+    set: &ActiveSet,
+    along: &[f64],
+    size: f64,
+    what: &str,
+) {
+    let most = gain(problem, kept, set.point(), along);
+    let slope = FAR * norm(along);
+    assert!(
+        most <= GAP * (1.0 + size * size + slope),
+        "{what}: a step gains {most:e} of {slope:e}"
+    );
+}
+
+/// The most that a step within the bounds and beside the kept rows gains along a direction.
+fn gain(problem: &Problem, kept: &[Vec<f64>], y: &[f64], along: &[f64]) -> f64 {
+    let n = problem.n;
+    let mut kept: Vec<&[f64]> = kept.iter().map(Vec::as_slice).collect();
+    let mut rows: Vec<(&[f64], Interval)> = Vec::new();
+    for (row, (l, u)) in problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper)) {
+        let value = product(row, y).0;
+        let far = FAR * norm(row) * (n as f64).sqrt();
+        let lower = (l - value).min(0.0).max(-far);
+        let upper = (u - value).max(0.0).min(far);
+        if upper - lower < 1e-12 {
+            kept.push(row);
+        } else {
+            rows.push((row, Interval { lower, upper }));
+        }
+    }
+    let normals = Matrix::from_fn(n, kept.len(), |j, i| kept[i][j]);
+    let free = ColumnSpace::of(&normals, Threshold::Relative(1e-14)).complement();
+    let m = free.cols();
+    if m == 0 {
+        return 0.0;
+    }
+    let units = Matrix::identity(n);
+    let each = (0..n).map(|i| (units.column(i), Interval::symmetric(FAR)));
+    let rows: Vec<(&[f64], Interval)> = rows.into_iter().chain(each).collect();
+    let on_free = |row: &[f64], k: usize| row.iter().zip(free.column(k)).map(|(a, b)| a * b).sum();
+    let a = Matrix::from_fn(rows.len(), m, |i, k| on_free(rows[i].0, k));
+    let bounds: Vec<Interval> = rows.iter().map(|row| row.1).collect();
+    let first: Vec<f64> = (0..m).map(|k| on_free(along, k)).collect();
+    let step = BoundedLinearProgram::new(&a, &bounds)
+        .maximize(Objective { first: &first, second: &vec![0.0; m] });
+    first.iter().zip(&step).map(|(a, b)| a * b).sum()
+}
