@@ -3,11 +3,14 @@
 //!
 //! Formula  Wilson interval of the share p = c / n that is caught, z = 1.96:
 //!          (p + z^2 / 2n +- z sqrt(p (1 - p) / n + z^2 / 4n^2)) / (1 + z^2 / n)
-//! Valid    expressions of one line outside of constants, patterns and macros. Equivalent mutants
-//!          (a wrong step that is only slower) count as missed: each is a question for a person
+//! Valid    expressions of one line outside of constants, patterns and macros. A mutant that is missed
+//!          is a question for a person: those that are equivalent (a wrong step that is only slower)
+//!          are listed with the reason (`equivalent`) and do not count
 //! Why so   all mutants are compiled once into a copy of the library, each behind a test of the
-//!          variable CYLINDROID_MUTANT; one build for each mutant would take a hundred times as long
+//!          variable CYLINDROID_MUTANT; one build for each mutant would take a hundred times as long.
+//!          The tests without a mutant note which mutants each of them reaches, and only those run
 
+mod equivalent;
 mod mutant;
 mod run;
 mod sites;
@@ -17,6 +20,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 
+use self::equivalent::Equivalent;
 use self::mutant::{BUILD, Mutant};
 use crate::models;
 use crate::shell::{cargo, root, run as shell_run};
@@ -36,36 +40,48 @@ const FOLDERS: [&str; 11] = [
     "spatial",
 ];
 
-/// `--sample N` mutants (40), drawn with `--seed S` (1), within `--minutes M`.
+/// `--sample N` mutants (40) of `--folder F` (all), drawn with `--seed S` (1), within `--minutes M`.
 ///
 /// # Errors
 /// Tests that fail without a mutant; a copy that does not build.
 pub(crate) fn task(arguments: &[String]) -> Result<()> {
     let (mut sample, mut seed, mut minutes) = (40_usize, 1_u64, f64::INFINITY);
+    let mut folders = Vec::new();
     for pair in arguments.chunks(2) {
         match pair {
             [flag, value] if flag == "--sample" => sample = value.parse().context("--sample")?,
             [flag, value] if flag == "--seed" => seed = value.parse().context("--seed")?,
             [flag, value] if flag == "--minutes" => minutes = value.parse().context("--minutes")?,
-            _ => bail!("mutants has the options --sample N, --seed S and --minutes M"),
+            [flag, value] if flag == "--folder" => folders.push(value.as_str()),
+            _ => bail!("mutants has the options --sample N, --seed S, --minutes M and --folder F"),
         }
     }
+    if let Some(unknown) = folders.iter().find(|folder| !FOLDERS.contains(folder)) {
+        bail!("--folder {unknown}: one of {}", FOLDERS.join(", "));
+    }
+    if folders.is_empty() {
+        folders = FOLDERS.to_vec();
+    }
+    let equivalent = Equivalent::load()?;
     let robots = models::fetch()?;
     let copy = root().join("target/mutants");
     let library = copied(&copy)?;
     let mut sites = Vec::new();
-    for folder in FOLDERS {
+    for folder in folders {
         sites::find(&library.join("src"), folder, &mut sites)?;
     }
     let all = sites.len();
     let mut mutants = sites::drawn(sites, sample, seed);
     println!("{} of {all} mutants", mutants.len());
     build(&library, &mut mutants)?;
-    let report = run::all(&copy, &library, &robots, &mutants, minutes)?;
+    let report = run::all(&copy, &library, &robots, (&mutants, &equivalent), minutes)?;
     let (caught, tried) = (report.caught, report.caught + report.missed.len());
     let [lower, upper] = wilson(caught, tried);
     for mutant in &report.missed {
         println!("missed  {}:{}: {} -> {}", mutant.file, mutant.line, mutant.old, mutant.new);
+    }
+    if report.equivalent > 0 {
+        println!("{} equivalent ones apart", report.equivalent);
     }
     println!(
         "{caught} of {tried} caught: {:.0} %, {:.0} to {:.0} % with a probability of 95 %",
@@ -101,16 +117,37 @@ fn copied(copy: &Path) -> Result<std::path::PathBuf> {
     Ok(library)
 }
 
-/// True for the mutant whose number is in the environment.
+/// True for the mutant whose number is in the environment. With `CYLINDROID_MUTANTS_REACHED` it notes
+/// in this file the numbers that are asked for.
 const SWITCH: &str = "
 pub(crate) fn mutant(number: u32) -> bool {
     use std::sync::atomic::{AtomicU32, Ordering};
     static CHOSEN: AtomicU32 = AtomicU32::new(u32::MAX);
-    if CHOSEN.load(Ordering::Relaxed) == u32::MAX {
+    let mut chosen = CHOSEN.load(Ordering::Relaxed);
+    if chosen == u32::MAX {
         let given = std::env::var(\"CYLINDROID_MUTANT\").ok();
-        CHOSEN.store(given.and_then(|n| n.parse().ok()).unwrap_or(u32::MAX - 1), Ordering::Relaxed);
+        let none = u32::MAX - 1 - u32::from(std::env::var_os(\"CYLINDROID_MUTANTS_REACHED\").is_some());
+        chosen = given.and_then(|n| n.parse().ok()).unwrap_or(none);
+        CHOSEN.store(chosen, Ordering::Relaxed);
     }
-    CHOSEN.load(Ordering::Relaxed) == number
+    if chosen == u32::MAX - 2 {
+        note_mutant(number);
+    }
+    chosen == number
+}
+
+#[cold]
+fn note_mutant(number: u32) {
+    use std::io::Write;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    static NOTED: [AtomicBool; 65536] = [const { AtomicBool::new(false) }; 65536];
+    let noted = &NOTED[number as usize % NOTED.len()];
+    if noted.load(Ordering::Relaxed) || noted.swap(true, Ordering::Relaxed) {
+        return;
+    }
+    let path = std::env::var_os(\"CYLINDROID_MUTANTS_REACHED\").unwrap_or_default();
+    let file = std::fs::OpenOptions::new().append(true).open(path);
+    let _ = file.and_then(|mut file| file.write_all(format!(\"{number}\\n\").as_bytes()));
 }
 ";
 

@@ -1,7 +1,7 @@
 //! Places in the source that can be mutated, and a sample of them.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use proc_macro2::Span;
@@ -11,18 +11,39 @@ use syn::{BinOp, Expr, Lit, UnOp};
 
 use super::mutant::Mutant;
 
-/// The mutants of the files below a folder of `source`.
+/// The mutants of the files below a folder of `source`; files that are compiled for tests alone are
+/// left out.
 pub(super) fn find(source: &Path, folder: &str, found: &mut Vec<Mutant>) -> Result<()> {
+    let mut of_tests = Vec::new();
+    find_below(source, folder, found, &mut of_tests)?;
+    found.retain(|mutant| !of_tests.contains(&source.join(&mutant.file)));
+    Ok(())
+}
+
+fn find_below(
+    source: &Path,
+    folder: &str,
+    found: &mut Vec<Mutant>,
+    of_tests: &mut Vec<PathBuf>,
+) -> Result<()> {
     let mut entries: Vec<_> =
         fs::read_dir(source.join(folder))?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
     entries.sort();
     for path in entries {
         let name = path.strip_prefix(source)?.to_string_lossy().into_owned();
         if path.is_dir() {
-            find(source, &name, found)?;
-        } else if name.ends_with(".rs") && !name.ends_with("tests.rs") {
+            find_below(source, &name, found, of_tests)?;
+        } else if name.ends_with(".rs") {
             let text = fs::read_to_string(&path)?;
             let file = syn::parse_file(&text).with_context(|| name.clone())?;
+            let own = if name.ends_with("mod.rs") { path.parent() } else { None };
+            let below = own.map_or_else(|| path.with_extension(""), Path::to_owned);
+            of_tests.extend(file.items.iter().filter_map(|item| match item {
+                syn::Item::Mod(item) if item.content.is_none() && is_test(&item.attrs) => {
+                    Some(below.join(format!("{}.rs", item.ident)))
+                }
+                _ => None,
+            }));
             let mut visitor = Visitor { name: &name, text: &text, found };
             visitor.visit_file(&file);
         }
@@ -70,11 +91,14 @@ impl Visitor<'_> {
     }
 }
 
+/// `#[test]`, `#[cfg(test)]`, `#[cfg(any(test, fuzzing))]`.
 fn is_test(attributes: &[syn::Attribute]) -> bool {
     attributes.iter().any(|a| {
-        let is_cfg_test = a.path().is_ident("cfg")
-            && a.parse_args::<syn::Path>().is_ok_and(|path| path.is_ident("test"));
-        a.path().is_ident("test") || is_cfg_test
+        let condition = match &a.meta {
+            syn::Meta::List(list) if a.path().is_ident("cfg") => list.tokens.to_string(),
+            _ => String::new(),
+        };
+        a.path().is_ident("test") || condition == "test" || condition.starts_with("any (test")
     })
 }
 
@@ -100,7 +124,7 @@ impl<'ast> Visit<'ast> for Visitor<'_> {
     }
 
     fn visit_impl_item_fn(&mut self, item: &'ast syn::ImplItemFn) {
-        if item.sig.constness.is_none() {
+        if item.sig.constness.is_none() && !is_test(&item.attrs) {
             visit::visit_impl_item_fn(self, item);
         }
     }
@@ -163,5 +187,31 @@ impl<'ast> Visit<'ast> for Visitor<'_> {
             self.add(e.span(), e.method.span(), new);
         }
         visit::visit_expr_method_call(self, e);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::find;
+
+    #[test]
+    fn code_of_tests_has_no_mutants() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        let sum = "fn f(x: f64, y: f64) -> f64 { x + y }";
+        let tests = "#[cfg(any(test, fuzzing))]\nmod referee;\n#[cfg(test)]\nmod tests;";
+        let own = format!("#[cfg(test)]\nmod inside {{ {sum} }}");
+        write("a/b.rs", &format!("{sum}\n{tests}\n{own}"));
+        write("a/b/referee.rs", sum);
+        write("a/b/tests.rs", sum);
+        write("a/b/c.rs", sum);
+        let mut found = Vec::new();
+        find(folder.path(), "a", &mut found).unwrap();
+        let places: Vec<&str> = found.iter().map(|m| m.file.as_str()).collect();
+        assert_eq!(places, ["a/b/c.rs", "a/b.rs"]);
     }
 }
