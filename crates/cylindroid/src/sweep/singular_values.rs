@@ -96,15 +96,25 @@ impl SingularValues {
                 }
             }
             singular_values(&mut columns, long, &self.pairs, &mut values);
+            sort(&mut values);
             if count == R::LANES {
                 R::scatter(&values, to, k);
             } else {
                 R::scatter(&values, &mut tail, k);
                 to.copy_from_slice(&tail[..count * k]);
             }
-            for own in to.chunks_exact_mut(k) {
-                own.sort_unstable_by(|a, b| b.total_cmp(a));
-            }
+        }
+    }
+}
+
+/// Largest first in each lane, by exchanges of neighbours: as many rounds as there are values.
+#[inline(always)]
+fn sort<R: SimdFloat>(values: &mut [R]) {
+    for round in 0..values.len() {
+        for pair in values[round % 2..].chunks_exact_mut(2) {
+            let [a, b] = [pair[0], pair[1]];
+            pair[0] = R::select_lt(a, b, b, a);
+            pair[1] = R::select_lt(a, b, a, b);
         }
     }
 }

@@ -14,10 +14,12 @@
 //! Checked  tests::first_points, tests/sweep/sampling.rs::every_prefix_is_a_net
 
 use super::direction_numbers::DIRECTION_NUMBERS;
+#[cfg(target_arch = "x86_64")]
+use crate::scalar::Avx2;
 
 /// Bits of an index and of a number.
 const BITS: usize = 32;
-/// Indices of a block share their higher bits.
+/// Points computed at once.
 const BLOCK: usize = 256;
 
 /// The scrambled sequence of a seed.
@@ -52,18 +54,45 @@ impl Sobol {
     /// The points `first`, `first + 1`, ...: a number of (0, 1) for each dimension, one point after
     /// the other.
     pub(super) fn write(&self, first: u32, out: &mut [f64]) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(cpu) = Avx2::detect() {
+            #[allow(unsafe_code)] // the one way to call functions compiled for more
+            // SAFETY: the token proves that the processor has these features.
+            return unsafe { self.write_avx2(cpu, first, out) };
+        }
+        self.write_with(first, out);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn write_avx2(&self, _: Avx2, first: u32, out: &mut [f64]) {
+        self.write_with(first, out);
+    }
+
+    #[inline(always)]
+    fn write_with(&self, first: u32, out: &mut [f64]) {
         let width = self.dimensions.len();
-        for (d, dimension) in self.dimensions.iter().enumerate() {
-            let (mut block, mut high) = (usize::MAX, 0);
-            for (k, point) in out.chunks_exact_mut(width).enumerate() {
-                let index = first as usize + k;
-                if index / BLOCK != block {
-                    block = index / BLOCK;
-                    high = combine(&dimension.vectors, block * BLOCK);
+        let mut numbers = [0.0; BLOCK];
+        let mut start = first as usize;
+        let mut left = out;
+        // Indices of a block share their higher bits.
+        while left.len() >= width {
+            let low = start % BLOCK;
+            let count = (BLOCK - low).min(left.len() / width);
+            let (points, rest) = left.split_at_mut(count * width);
+            for (d, dimension) in self.dimensions.iter().enumerate() {
+                let high = combine(&dimension.vectors, start - low);
+                let numbers = &mut numbers[..count];
+                for (number, bits) in numbers.iter_mut().zip(&dimension.low[low..low + count]) {
+                    let x = scramble(high ^ bits, dimension.scramble);
+                    *number = (f64::from(x.reverse_bits()) + 0.5) * (1.0 / 4_294_967_296.0);
                 }
-                let x = scramble(high ^ dimension.low[index % BLOCK], dimension.scramble);
-                point[d] = (f64::from(x.reverse_bits()) + 0.5) * (1.0 / 4_294_967_296.0);
+                for (point, number) in points.chunks_exact_mut(width).zip(numbers) {
+                    point[d] = *number;
+                }
             }
+            start += count;
+            left = rest;
         }
     }
 }
@@ -95,6 +124,7 @@ fn combine(vectors: &[u32; BITS], index: usize) -> u32 {
 
 /// Owen's scrambling of a number with its bits in reverse order: a bit is changed by those before
 /// it, as a hash says.
+#[inline(always)]
 fn scramble(mut x: u32, by: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(by);

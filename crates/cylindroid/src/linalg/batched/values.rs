@@ -29,8 +29,9 @@ pub(crate) fn singular_values<R: SimdFloat>(
     pairs: &[(usize, usize)],
     values: &mut [R],
 ) {
-    // Once more for twists, whose loops are then known.
+    // Once more for twists and for rows of seven joints, whose loops are then known.
     match rows {
+        7 => of_length(columns, 7, pairs, values),
         6 => of_length(columns, 6, pairs, values),
         3 => of_length(columns, 3, pairs, values),
         _ => of_length(columns, rows, pairs, values),
