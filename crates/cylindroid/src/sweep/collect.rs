@@ -44,7 +44,7 @@ impl Sweep {
         self.check_memory()?;
         let mut parts: Vec<Option<Table>> = vec![None; self.parts()];
         let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
-        let work = |part: usize| self.table(self.rows_of(part));
+        let work = |(): &mut (), part: usize| self.table(self.rows_of(part));
         let finished = |part: usize, table: Table| {
             let done = state.get().done + table.rows() as u64;
             state.set(Progress { rows: self.rows(), done, computed: done });

@@ -254,6 +254,7 @@ impl Designs {
     /// The rows, in the columns of the sweep.
     pub(super) fn run(&self, columns: &[Column], rows: Range<u64>) -> Result<Vec<Values>> {
         let mut out: Vec<Values> = columns.iter().map(Column::empty).collect();
+        let mut own = Vec::new();
         let mut start = rows.start;
         while start < rows.end {
             let design = start / self.each;
@@ -264,12 +265,13 @@ impl Designs {
             let pairs: Vec<(&str, f64)> =
                 self.space.names().into_iter().zip(values.iter().copied()).collect();
             let prepared = self.prepared(&pairs);
-            let mut own = match &prepared {
+            match &prepared {
                 Ok((configurations, evaluator)) => {
-                    evaluator.run(configurations, &self.own_columns, start - first..end - first)?
+                    let (rows, columns) = (start - first..end - first, &self.own_columns);
+                    evaluator.run(configurations, columns, rows, &mut own)?;
                 }
-                Err(_) => self.own_columns.iter().map(|c| c.missing(count)).collect(),
-            };
+                Err(_) => own = self.own_columns.iter().map(|c| c.missing(count)).collect(),
+            }
             let mut before = vec![
                 Values::Counts((start..end).collect()),
                 Values::Counts(vec![design; count]),

@@ -8,12 +8,13 @@
 use std::ops::Range;
 use std::slice::IterMut;
 
+use super::columns::append;
 use super::options::{SweepOptions, VelocityMetric};
 use super::payload::Payload;
 use super::quantity::{PITCHES, Quantity};
 use super::singular_values::SingularValues;
 use super::source::Configurations;
-use super::table::{Column, Values};
+use super::table::{Column, Values, begin};
 use crate::closure::ClosedChain;
 use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, KinematicsBatch, ReferenceFrame};
@@ -123,17 +124,11 @@ impl Evaluator {
         from: &Configurations,
         columns: &[Column],
         rows: Range<u64>,
-    ) -> Result<Vec<Values>> {
+        out: &mut Vec<Values>,
+    ) -> Result<()> {
         let n = self.mechanism.n();
         let all = usize::try_from(rows.end - rows.start).unwrap_or(0);
-        let mut out: Vec<Values> = columns.iter().map(Column::empty).collect();
-        for values in &mut out {
-            match values {
-                Values::Numbers(v) => v.reserve_exact(all),
-                Values::Counts(v) => v.reserve_exact(all),
-                Values::Texts(v) => v.reserve_exact(all),
-            }
-        }
+        begin(out, columns, all);
         let mut scratch = Scratch::new(self, all.min(BLOCK));
         let mut start = rows.start;
         while start < rows.end {
@@ -149,7 +144,7 @@ impl Evaluator {
             self.block(&mut scratch, start, &mut columns)?;
             start = end;
         }
-        Ok(out)
+        Ok(())
     }
 
     fn block(&self, s: &mut Scratch, start: u64, columns: &mut IterMut<'_, Values>) -> Result<()> {
@@ -181,11 +176,9 @@ impl Evaluator {
         for quantity in &self.quantities {
             match quantity {
                 Q::Pose => {
-                    let mut own = numbers(columns, 7);
-                    for pose in poses.chunks_exact(POSE) {
-                        let row = position_and_quaternion(pose);
-                        own.iter_mut().zip(row).for_each(|(column, x)| column.push(x));
-                    }
+                    let seven: Vec<[f64; 7]> =
+                        poses.chunks_exact(POSE).map(position_and_quaternion).collect();
+                    put(seven.as_flattened(), 7, 7, columns);
                 }
                 Q::Jacobian => put(jacobians, 6 * n, 6 * n, columns),
                 Q::SingularValues => put(scaled, k, k, columns),
@@ -321,9 +314,7 @@ impl Scratch {
 
 /// The first `width` numbers of rows of `stride`, into as many columns.
 fn put(rows: &[f64], stride: usize, width: usize, columns: &mut IterMut<'_, Values>) {
-    for i in 0..width {
-        extend(columns, rows.iter().skip(i).step_by(stride).copied());
-    }
+    append(rows, stride, &mut numbers(columns, width));
 }
 
 /// Numbers into the next column.

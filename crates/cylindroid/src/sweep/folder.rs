@@ -17,6 +17,7 @@ use super::job::Sweep;
 use super::manifest::Part;
 use super::parts::run_parts;
 use super::shared_folder::SharedFolder;
+use super::table::Values;
 use crate::error::Result;
 
 /// Between two manifests at least.
@@ -78,7 +79,9 @@ impl Sweep {
         let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
         let finished = Cell::new(0);
         let mut last = Instant::now();
-        let work = |part: usize| self.write_part(folder, part, shared.listed[part].as_ref());
+        let work = |memory: &mut Vec<Values>, part: usize| {
+            self.write_part_with(memory, folder, part, shared.listed[part].as_ref())
+        };
         let take = |part: usize, (own, computed): (Part, bool)| {
             let rows = self.rows_of(part);
             let (rows, before) = (rows.end - rows.start, state.get());

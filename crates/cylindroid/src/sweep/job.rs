@@ -11,7 +11,7 @@ use super::own_columns::{self, OwnColumn};
 use super::quantity::Quantity;
 use super::recipe::Recipe;
 use super::source::Configurations;
-use super::table::{Column, Table};
+use super::table::{Column, Table, Values};
 use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
@@ -164,6 +164,13 @@ impl Sweep {
     /// Rows that the sweep does not have; configurations so far out that a result overflows; errors of
     /// own columns.
     pub fn table(&self, rows: Range<u64>) -> Result<Table> {
+        let mut values = Vec::new();
+        self.fill(rows, &mut values)?;
+        Ok(Table { columns: self.columns.clone(), values })
+    }
+
+    /// The same into memory that may have other rows.
+    pub(super) fn fill(&self, rows: Range<u64>, values: &mut Vec<Values>) -> Result<()> {
         if rows.start > rows.end || rows.end > self.rows() {
             return Err(Error::InvalidOption {
                 option: "rows",
@@ -171,16 +178,15 @@ impl Sweep {
                 reason: format!("the sweep has {} rows", self.rows()),
             });
         }
-        let values = match &self.designs {
-            None => {
-                let others = &self.columns[..self.columns.len() - self.own.len()];
-                let mut values = self.evaluator.run(&self.configurations, others, rows.clone())?;
-                values.extend(own_columns::run(&self.own, &self.configurations, rows)?);
-                values
-            }
-            Some(designs) => designs.run(&self.columns, rows)?,
-        };
-        Ok(Table { columns: self.columns.clone(), values })
+        if let Some(designs) = &self.designs {
+            *values = designs.run(&self.columns, rows)?;
+            return Ok(());
+        }
+        let others = &self.columns[..self.columns.len() - self.own.len()];
+        let from = &self.configurations;
+        self.evaluator.run(from, others, rows.clone(), values)?;
+        values.extend(own_columns::run(&self.own, from, rows)?);
+        Ok(())
     }
 }
 

@@ -23,6 +23,7 @@
 //! ```
 
 mod collect;
+mod columns;
 mod designs;
 mod direction_numbers;
 mod evaluate;

@@ -23,25 +23,29 @@ use sha2::{Digest, Sha256};
 
 use super::manifest::{Part, cannot_write};
 use super::recipe::hexadecimal;
-use super::table::{Column, ColumnKind, Table, Values};
+use super::table::{Column, ColumnKind, Values};
 use crate::error::{Error, Result};
 
 /// Writes the columns, and makes the file durable.
-pub(super) fn write(path: &Path, table: &Table) -> Result<Part> {
+pub(super) fn write(path: &Path, columns: &[Column], values: &[Values]) -> Result<Part> {
     let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
-    let (part, file) = into_sink(path, file, table)?;
+    let (part, file) = into_sink(path, file, (columns, values))?;
     file.sync_all().map_err(|error| cannot_write(path, &error))?;
     Ok(part)
 }
 
 /// The bytes of the same file.
-pub(super) fn bytes(name: &str, table: &Table) -> Result<(Part, Vec<u8>)> {
-    into_sink(Path::new(name), Vec::new(), table)
+pub(super) fn bytes(name: &str, columns: &[Column], values: &[Values]) -> Result<(Part, Vec<u8>)> {
+    into_sink(Path::new(name), Vec::new(), (columns, values))
 }
 
-fn into_sink<W: Write + Send>(path: &Path, inner: W, table: &Table) -> Result<(Part, W)> {
+fn into_sink<W: Write + Send>(
+    path: &Path,
+    inner: W,
+    (columns, values): (&[Column], &[Values]),
+) -> Result<(Part, W)> {
     let mut sink = Hashed { inner, hasher: Sha256::new(), bytes: 0, failed: None };
-    let written = into(&mut sink, &table.columns, &table.values);
+    let written = into(&mut sink, columns, values);
     if let Some(error) = sink.failed {
         return Err(cannot_write(path, &error));
     }

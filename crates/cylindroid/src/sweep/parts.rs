@@ -15,14 +15,15 @@ use crate::error::Result;
 /// Between two calls of `tick` at most.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Runs `work` on the parts 0 to `count`, as many at a time as there are threads. On the thread of
+/// Runs `work` on the parts 0 to `count`, as many at a time as there are threads, each with memory of
+/// its own. On the thread of
 /// the caller, `finished` takes each result as it comes and `tick` says whether to go on; after
 /// false, parts that have been started are finished and no others begin. The first error ends the
 /// run in the same way and is returned.
-pub(super) fn run_parts<T: Send>(
+pub(super) fn run_parts<M: Default, T: Send>(
     count: usize,
     threads: Option<NonZeroUsize>,
-    work: impl Fn(usize) -> Result<T> + Sync,
+    work: impl Fn(&mut M, usize) -> Result<T> + Sync,
     mut finished: impl FnMut(usize, T),
     mut tick: impl FnMut() -> Result<bool>,
 ) -> Result<()> {
@@ -36,10 +37,11 @@ pub(super) fn run_parts<T: Send>(
             let sender = sender.clone();
             let (next, stop, work) = (&next, &stop, &work);
             scope.spawn(move || {
+                let mut memory = M::default();
                 while !stop.load(Ordering::Relaxed) {
                     let part = next.fetch_add(1, Ordering::Relaxed);
                     // The receiver outlives the threads.
-                    if part >= count || sender.send((part, work(part))).is_err() {
+                    if part >= count || sender.send((part, work(&mut memory, part))).is_err() {
                         return;
                     }
                 }

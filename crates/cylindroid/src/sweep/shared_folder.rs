@@ -16,7 +16,7 @@ use serde_json::Value;
 use super::job::Sweep;
 use super::manifest::{self, MANIFEST, Part, cannot_write, part_name};
 use super::parquet_file;
-use super::table::Table;
+use super::table::{Table, Values};
 use crate::error::{Error, Result};
 
 /// A folder that is locked until this value is dropped.
@@ -92,7 +92,8 @@ impl Sweep {
     /// # Errors
     /// As [`Sweep::part`].
     pub fn part_file(&self, part: usize) -> Result<(Part, Vec<u8>)> {
-        parquet_file::bytes(&part_name(part), &self.part(part)?)
+        let Table { columns, values } = self.part(part)?;
+        parquet_file::bytes(&part_name(part), &columns, &values)
     }
 
     /// Writes the file of a part, under another name first. A part that is `listed` is computed only
@@ -106,14 +107,25 @@ impl Sweep {
         part: usize,
         listed: Option<&Part>,
     ) -> Result<(Part, bool)> {
+        self.write_part_with(&mut Vec::new(), folder, part, listed)
+    }
+
+    /// The same with memory for the rows.
+    pub(super) fn write_part_with(
+        &self,
+        memory: &mut Vec<Values>,
+        folder: &Path,
+        part: usize,
+        listed: Option<&Part>,
+    ) -> Result<(Part, bool)> {
         let path = folder.join(part_name(part));
         let is_same = |own: &&Part| parquet_file::checksum(&path).is_ok_and(|found| found == **own);
         if let Some(own) = listed.filter(is_same) {
             return Ok((own.clone(), false));
         }
-        let table = self.part(part)?;
+        self.fill(self.rows_of(part), memory)?;
         let temporary = path.with_file_name(temporary_name(part));
-        let written = parquet_file::write(&temporary, &table).and_then(|own| {
+        let written = parquet_file::write(&temporary, &self.columns, memory).and_then(|own| {
             fs::rename(&temporary, &path).map_err(|error| cannot_write(&path, &error))?;
             Ok((own, true))
         });

@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 
 use super::job::Sweep;
 use super::parts::run_parts;
-use super::table::{Table, Values};
+use super::table::Values;
 use super::{Column, Progress};
 use crate::error::Result;
 
@@ -120,8 +120,8 @@ impl Sweep {
     ) -> Result<Option<Vec<(Column, Statistics)>>> {
         let mut parts: Vec<Option<Vec<Sum>>> = vec![None; self.parts()];
         let progress = std::cell::Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
-        let work = |part: usize| {
-            let Table { values, .. } = self.table(self.rows_of(part))?;
+        let work = |values: &mut Vec<Values>, part: usize| {
+            self.fill(self.rows_of(part), values)?;
             Ok(values.iter().skip(1).map(Sum::of).collect::<Vec<_>>())
         };
         let finished = |part: usize, sums| {

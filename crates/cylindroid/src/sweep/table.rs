@@ -67,6 +67,20 @@ impl Column {
     }
 }
 
+/// Makes `values` those of the columns, without entries; memory that they have is used again, since
+/// the pages of new memory cost as much time as some quantities.
+pub(super) fn begin(values: &mut Vec<Values>, columns: &[Column], rows: usize) {
+    values.truncate(columns.len());
+    for (i, column) in columns.iter().enumerate() {
+        match values.get_mut(i) {
+            Some(own) if own.is_of(column.kind) => {}
+            Some(own) => *own = column.empty(),
+            None => values.push(column.empty()),
+        }
+        values[i].begin(rows);
+    }
+}
+
 /// The entries of a column.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -80,6 +94,33 @@ pub enum Values {
 }
 
 impl Values {
+    fn is_of(&self, kind: ColumnKind) -> bool {
+        let own = match self {
+            Self::Numbers(_) => ColumnKind::Number,
+            Self::Counts(_) => ColumnKind::Count,
+            Self::Texts(_) => ColumnKind::Text,
+        };
+        own == kind
+    }
+
+    /// Without entries, and with room for so many.
+    pub(super) fn begin(&mut self, rows: usize) {
+        match self {
+            Self::Numbers(own) => {
+                own.clear();
+                own.reserve_exact(rows);
+            }
+            Self::Counts(own) => {
+                own.clear();
+                own.reserve_exact(rows);
+            }
+            Self::Texts(own) => {
+                own.clear();
+                own.reserve_exact(rows);
+            }
+        }
+    }
+
     /// Appends entries of the same type.
     pub(super) fn append(&mut self, more: Self) {
         match (self, more) {

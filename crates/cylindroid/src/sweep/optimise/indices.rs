@@ -197,11 +197,12 @@ impl Indices {
         let without = |reason: String| Refusal::WithoutIndex(format!("{place}{reason}"));
         let (configurations, evaluator) = self.designs.prepared(&pairs).map_err(invalid)?;
         let columns = &self.designs.own_columns;
-        let mut start = 0;
+        let (mut start, mut rows) = (0, Vec::new());
         while start < configurations.rows {
             let end = configurations.rows.min(start + ROWS);
-            let rows = evaluator.run(&configurations, columns, start..end);
-            let rows = rows.map_err(|error| without(error.to_string()))?;
+            evaluator
+                .run(&configurations, columns, start..end, &mut rows)
+                .map_err(|error| without(error.to_string()))?;
             if let Some(Values::Counts(closed)) = self.closed.and_then(|place| rows.get(place))
                 && let Some(row) = closed.iter().position(|closed| *closed == 0)
             {

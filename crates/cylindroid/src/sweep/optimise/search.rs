@@ -100,7 +100,7 @@ impl Workers<'_> {
         run_parts(
             count,
             self.threads,
-            |part| Ok(work(part, evaluated, stopped)),
+            |(): &mut (), part| Ok(work(part, evaluated, stopped)),
             |part, result| all[part] = Some(result),
             || {
                 let go_on = observe(evaluated.load(Ordering::Relaxed));
