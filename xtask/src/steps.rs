@@ -239,6 +239,30 @@ pub(crate) fn figures() -> Result<()> {
             "--plot",
             "docs/map-five-bar.svg",
         ],
+        &[
+            "sweep",
+            "ur5e",
+            "--reach",
+            "x=-1:1:31",
+            "--reach",
+            "y=0:0.6:3",
+            "--reach",
+            "z=-0.8:1.2:31",
+            "--rolls",
+            "8",
+            "--plot",
+            "docs/reach-ur5e.svg",
+        ],
+        &[
+            "sweep",
+            "panda",
+            "--samples",
+            "1000",
+            "--quantities",
+            "pose,yoshikawa",
+            "--plot",
+            "docs/cloud-panda.svg",
+        ],
     ] {
         let run_it = ["run", "--release", "--quiet", "--package", "cylindroid-cli", "--"];
         run(&mut cargo(&[&run_it, command].concat()))?;

@@ -7,6 +7,7 @@ mod labels;
 pub(crate) mod map;
 pub(crate) mod screws;
 mod skeleton;
+pub(crate) mod sweep;
 pub(crate) mod tasks;
 
 use std::ops::Range;

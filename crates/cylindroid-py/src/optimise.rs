@@ -223,8 +223,15 @@ pub(crate) fn optimise<'py>(
 ) -> Result<PyOptimalDesigns> {
     let robot = &*mechanism;
     let mechanism = robot.inner.clone();
-    let chosen =
-        Chosen { samples, seed, over: over.as_ref(), q: q.as_ref(), configurations, designs: true };
+    let chosen = Chosen {
+        samples,
+        seed,
+        over: over.as_ref(),
+        q: q.as_ref(),
+        configurations,
+        designs: true,
+        reach: None,
+    };
     let (source, workspace) = chosen.source(robot)?;
     let objectives = [
         objectives("minimise", minimise.as_ref(), Sense::Minimise)?,

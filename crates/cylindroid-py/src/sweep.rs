@@ -5,12 +5,13 @@ mod own_columns;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use cylindroid::Vec3;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, AxisKinds, DesignSpace, ParameterRange, Part, Quantity, SharedFolder, Source, Summary,
-    Sweep, SweepOptions, Table, Values, VelocityMetric, WriteOptions, parquet_configurations,
+    Sweep, SweepOptions, Table, Values, VelocityMetric, VoxelGrid, WriteOptions,
+    parquet_configurations,
 };
+use cylindroid::{Pose, Vec3};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -111,7 +112,8 @@ impl PySweepPlan {
     #[pyo3(signature = (mechanism, samples = None, seed = 0, over = None, q = None,
         configurations = None, quantities = None, frame = None, tool = None, task = None,
         metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new(),
-        direction = None))]
+        direction = None, reach = None, directions = VoxelGrid::DIRECTIONS,
+        rolls = VoxelGrid::ROLLS, reach_from = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
@@ -130,13 +132,30 @@ impl PySweepPlan {
         #[pyo3(from_py_with = argument)] designs: u64,
         #[pyo3(from_py_with = argument)] columns: Vec<Given>,
         direction: Option<Numbers<'_>>,
+        #[pyo3(from_py_with = argument)] reach: Option<Bound<'_, PyDict>>,
+        #[pyo3(from_py_with = argument)] directions: u64,
+        #[pyo3(from_py_with = argument)] rolls: u64,
+        reach_from: Option<Numbers<'_>>,
     ) -> Result<Self> {
         let robot = &*mechanism;
         let mechanism = robot.inner.clone();
         let ranges = vary.as_ref().map_or(Ok(Vec::new()), ranges)?;
         let sampled = !ranges.is_empty();
         let (over, q) = (over.as_ref(), q.as_ref());
-        let chosen = Chosen { samples, seed, over, q, configurations, designs: sampled };
+        let reach = match &reach {
+            None => None,
+            Some(reach) => Some(VoxelGrid {
+                axes: axes(reach)?,
+                world_from_grid: match &reach_from {
+                    None => Pose::IDENTITY,
+                    Some(from) => from.pose("reach_from")?,
+                },
+                directions,
+                rolls,
+            }),
+        };
+        let is_map = reach.is_some();
+        let chosen = Chosen { samples, seed, over, q, configurations, designs: sampled, reach };
         let (source, parameters) = chosen.source(robot)?;
         let space = match (parameters.is_empty(), sampled) {
             (true, false) => None,
@@ -148,6 +167,7 @@ impl PySweepPlan {
             }
         };
         let quantities = match quantities {
+            None if is_map => Vec::new(),
             None => Quantity::usual(&mechanism).to_vec(),
             Some(named) => {
                 named.iter().map(|name| Quantity::named(name)).collect::<cylindroid::Result<_>>()?
@@ -157,6 +177,7 @@ impl PySweepPlan {
         let end_effector =
             if chosen { Some(robot.end_effector(frame, tool.as_ref())?) } else { None };
         let own = OwnColumns::new(columns);
+        let part_rows = Sweep::usual_part_rows(&source, space.is_some());
         let options = SweepOptions {
             source,
             quantities,
@@ -169,7 +190,7 @@ impl PySweepPlan {
                 Some(direction) => Vec3::from_array(direction.entries("direction")?),
                 None => SweepOptions::default().direction,
             },
-            part_rows: if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS },
+            part_rows,
         };
         let sweep = match space {
             None => Sweep::new(&mechanism, options)?,
@@ -370,6 +391,8 @@ pub(crate) struct Chosen<'a, 'py> {
     pub(crate) configurations: Option<Bound<'py, PyAny>>,
     /// Designs without other configurations have home, or `q`.
     pub(crate) designs: bool,
+    /// The points of a capability map.
+    pub(crate) reach: Option<VoxelGrid>,
 }
 
 impl Chosen<'_, '_> {
@@ -383,6 +406,13 @@ impl Chosen<'_, '_> {
         };
         let designs = self.designs || !split.parameters.is_empty();
         let grid = !split.coordinates.is_empty();
+        if let Some(reach) = self.reach {
+            if self.samples.is_some() || grid || self.configurations.is_some() || self.q.is_some() {
+                let reason = "points have no configurations: leave out samples, over and others";
+                return Err(Failure::option("reach", "a dict", reason));
+            }
+            return Ok((Source::Voxels(reach), split.parameters));
+        }
         let source = match (self.samples, grid, self.configurations) {
             (Some(count), false, None) => Source::Samples { count, seed: self.seed },
             (None, true, None) => Source::Grid { axes: split.coordinates, rest },

@@ -3,6 +3,7 @@
 import hashlib
 import json
 import pathlib
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pyarrow.parquet as parquet
@@ -166,6 +167,49 @@ def test_what_is_not_given(tmp_path):
         cy.sweep(cy.load("five-bar"), samples=10)
     with pytest.raises(cy.UnknownNameError, match="yoshikawa"):
         cy.sweep(robot, samples=10, quantities=["yoshikava"])
+
+
+def test_capability_maps(tmp_path):
+    robot = cy.load("ur5e")
+    reach = {"z": (-0.1, 0.5, 3), "x": (0.2, 1.2, 4)}
+    options = {"reach": reach, "directions": 16, "rolls": 4, "quantities": ["yoshikawa"]}
+    found = cy.sweep(robot, **options)
+    names = ["index", "x", "y", "z", "directions", "orientations", "reachability"]
+    assert list(found) == [*names, "orientation_share", "best_yoshikawa"]
+    assert (found["y"] == 0).all() and np.allclose(found["z"][:3], [-0.1, 0.2, 0.5])
+    assert np.array_equal(found["reachability"], found["directions"] / 16)
+    assert np.allclose(found["orientation_share"], found["orientations"] / 64)
+    assert (found["orientations"] <= 4 * found["directions"]).all()
+    reached = found["directions"] > 0
+    assert np.array_equal(np.isnan(found["best_yoshikawa"]), ~reached) and 2 < reached.sum() < 12
+    again = cy.sweep(robot, **options, threads=1, out=tmp_path / "map")
+    table = parquet.read_table(tmp_path / "map" / "part-000000.parquet")
+    assert again.rows == 12 and np.array_equal(table["orientations"], found["orientations"])
+    # The grid moves with its axes: a turn of the first joint moves all of the arm.
+    turn = np.eye(4)
+    turn[:2, :2] = [[np.cos(0.7), -np.sin(0.7)], [np.sin(0.7), np.cos(0.7)]]
+    turned = cy.sweep(robot, **options, reach_from=turn)
+    assert np.array_equal(turned["orientations"], found["orientations"])
+    with ThreadPoolExecutor(2) as workers:
+        other = cy.sweep(robot, **options, engine=workers)
+    assert np.array_equal(other["best_yoshikawa"], found["best_yoshikawa"], equal_nan=True)
+
+
+def test_wrong_maps_are_refused():
+    robot = cy.load("ur5e")
+    reach = {"x": (0.2, 1.2, 4)}
+    with pytest.raises(cy.InvalidOptionError, match="points have no configurations"):
+        cy.sweep(robot, reach=reach, samples=3)
+    with pytest.raises(cy.UnknownNameError, match="no axis named 'u'"):
+        cy.sweep(robot, reach={"u": (0, 1, 2)})
+    with pytest.raises(cy.InvalidOptionError, match="best value of yoshikawa"):
+        cy.sweep(robot, reach=reach, quantities=["pose"])
+    with pytest.raises(cy.InvalidOptionError, match="0 asks for directions alone"):
+        cy.sweep(cy.load("youbot"), reach=reach)
+    with pytest.raises(cy.InvalidOptionError, match="own columns"):
+        cy.sweep(robot, reach=reach, columns={"a": lambda q, names: q[:, 0]})
+    with pytest.raises(cy.CylindroidError, match="reach_from"):
+        cy.sweep(robot, reach=reach, reach_from=[1, 2, 3])
 
 
 DESIGNS = pathlib.Path(__file__).parents[3] / "docs/designs.toml"

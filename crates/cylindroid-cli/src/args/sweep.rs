@@ -11,7 +11,7 @@ use super::{FrameArgs, ModelArgs};
 use crate::values::{Joints, Numbers};
 
 pub(crate) const ABOUT: &str = "\
-Quantities of millions of configurations: samples within the limits, grids, or a file
+Quantities of millions of configurations: samples within the limits, grids, or a file; capability maps
 
 Samples are points of a scrambled Sobol' sequence: sample i depends on the seed and i alone. Without \
 --out, statistics of each column are printed. With --out, the rows are written into a folder of \
@@ -21,7 +21,12 @@ are in the manifest.
 
 Parameters of a mechanism file in --over or --vary are designs, each with all configurations; alone, \
 with the configuration of --q. A design that cannot be loaded has rows with design_valid 0 and no \
-numbers.";
+numbers.
+
+--reach asks inverse kinematics at the points of a grid: of --directions that approach from all sides, \
+each with --rolls about it, it finds those that the tool reaches within the limits. Rows have their \
+number, reachability (the share of the directions), and of --quantities the best value over the \
+solutions.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +36,8 @@ Examples:
   cylindroid sweep docs/designs.toml --over crank=0.4:0.7:5 --quantities measures
   cylindroid sweep docs/designs.toml --vary crank=0.4:0.7 --designs 100 --quantities measures
   cylindroid sweep stewart --configurations configurations.csv --quantities pose,measures
+  cylindroid sweep ur5e --reach x=-1:1:21 --reach z=-0.5:1:16 --plot reach.svg
+  cylindroid sweep panda --samples 1e4 --quantities pose,yoshikawa --plot cloud.svg
 
 Quantities:
   pose                     position and unit quaternion of the frame
@@ -44,7 +51,8 @@ Quantities:
   gibson_hunt              class and principal pitches of the screw system
   measures                 mobility, distances to singularities, kinematic efficiencies, in --metric
 
-For closed chains: pose, limit_distance, payload and measures, of --configurations. Exit code 130 after an \
+For closed chains: pose, limit_distance, payload and measures, of --configurations. For --reach: \
+yoshikawa, smallest_singular_value, condition, limit_distance and payload. Exit code 130 after an \
 interrupt.";
 
 #[derive(Debug, Args)]
@@ -56,7 +64,7 @@ pub(crate) struct SweepArgs {
     /// Number of samples within the position limits, e.g. 1e6; joints without limits rotate
     /// through -pi to pi
     #[arg(long, value_name = "N", group = "sampled", allow_hyphen_values = true)]
-    #[arg(required_unless_present_any = ["over", "vary", "configurations"])]
+    #[arg(required_unless_present_any = ["over", "vary", "configurations", "reach"])]
     pub(crate) samples: Option<Count>,
 
     /// Selects one of the sequences of samples and of designs
@@ -81,7 +89,7 @@ pub(crate) struct SweepArgs {
     /// The other coordinates of a grid, or the configuration of all designs [rad or m], as for other
     /// commands
     #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["samples", "configurations"])]
+    #[arg(conflicts_with_all = ["samples", "configurations", "reach"])]
     pub(crate) q: Joints,
 
     /// A .csv, .json or .parquet file with a configuration in each row [rad or m]. Columns with
@@ -89,9 +97,29 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "samples")]
     pub(crate) configurations: Option<PathBuf>,
 
+    /// An axis of a capability map [m]: x, y or z, its first and last value and the number of values;
+    /// repeat for further axes, the others are 0
+    #[arg(long, value_name = "NAME=A:B:N", allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["samples", "configurations"])]
+    pub(crate) reach: Vec<AxisArg>,
+
+    /// Approach directions of the tool's z axis at each point, evenly spread over the sphere, in the
+    /// plane angles; 0: positions alone [default: 50]
+    #[arg(long, value_name = "N", requires = "reach", allow_hyphen_values = true)]
+    pub(crate) directions: Option<Count>,
+
+    /// Rotations about each direction; 0: any, for arms of five joints [default: 12]
+    #[arg(long, value_name = "N", requires = "reach", allow_hyphen_values = true)]
+    pub(crate) rolls: Option<Count>,
+
+    /// Placement of the axes of --reach in the world [m, rad] [default: that of the world]
+    #[arg(long, value_name = "X,Y,Z,ROLL,PITCH,YAW", requires = "reach")]
+    #[arg(allow_hyphen_values = true)]
+    pub(crate) reach_from: Option<Numbers<6>>,
+
     /// The quantities of each configuration, see below
     /// [default: pose,yoshikawa,smallest_singular_value,limit_distance; of a closed chain
-    /// pose,measures]
+    /// pose,measures; of --reach none]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) quantities: Vec<String>,
 
@@ -125,9 +153,17 @@ pub(crate) struct SweepArgs {
     pub(crate) resume: bool,
 
     /// Rows of a file: the unit of work, which each thread has once in memory [default: 65536,
-    /// of designs 1024]
+    /// of designs 1024, of --reach 64]
     #[arg(long, value_name = "N", requires = "out", allow_hyphen_values = true)]
     pub(crate) part_rows: Option<Count>,
+
+    /// Draw the rows as an SVG: grids as slices, poses as clouds of points, others as histograms
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) plot: Option<PathBuf>,
+
+    /// The column that colours the drawing [default: the first of a single quantity]
+    #[arg(long, value_name = "COLUMN", requires = "plot")]
+    pub(crate) color: Option<String>,
 
     /// Number of threads [default: that of the processor]
     #[arg(long, value_name = "K", allow_negative_numbers = true)]

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use cylindroid::sweep::{Axis, AxisKinds, Source};
-use cylindroid::{Error, Mechanism};
+use cylindroid::spatial::Rpy;
+use cylindroid::sweep::{Axis, AxisKinds, Source, VoxelGrid};
+use cylindroid::{Error, Mechanism, Pose, Vec3};
 
 use crate::args::{AxisArg, Count, OptimiseArgs, SweepArgs};
 use crate::number_file;
@@ -16,6 +17,8 @@ pub(crate) struct Chosen<'a> {
     pub(crate) samples: Option<Count>,
     pub(crate) seed: u64,
     pub(crate) configurations: Option<&'a PathBuf>,
+    /// The points of a capability map.
+    pub(crate) reach: Option<VoxelGrid>,
     pub(crate) q: &'a Joints,
     pub(crate) srdf: Option<&'a Path>,
 }
@@ -28,10 +31,27 @@ impl<'a> From<&'a SweepArgs> for Chosen<'a> {
             samples: *samples,
             seed: *seed,
             configurations: configurations.as_ref(),
+            reach: reach(args),
             q,
             srdf: model.srdf.as_deref(),
         }
     }
+}
+
+/// The points of a capability map.
+fn reach(args: &SweepArgs) -> Option<VoxelGrid> {
+    let grid = VoxelGrid::default();
+    let world_from_grid = args.reach_from.map_or(grid.world_from_grid, |from| {
+        let [x, y, z, roll, pitch, yaw] = from.0;
+        let rotation = Rpy { roll, pitch, yaw }.rotation();
+        Pose { rotation, translation: Vec3::new(x, y, z) }
+    });
+    (!args.reach.is_empty()).then(|| VoxelGrid {
+        axes: args.reach.iter().map(|axis| axis.0.clone()).collect(),
+        world_from_grid,
+        directions: args.directions.map_or(grid.directions, |count| count.0),
+        rolls: args.rolls.map_or(grid.rolls, |count| count.0),
+    })
 }
 
 impl<'a> From<&'a OptimiseArgs> for Chosen<'a> {
@@ -42,6 +62,7 @@ impl<'a> From<&'a OptimiseArgs> for Chosen<'a> {
             samples: *samples,
             seed: *seed,
             configurations: configurations.as_ref(),
+            reach: None,
             q,
             srdf: model.srdf.as_deref(),
         }
@@ -61,10 +82,11 @@ impl Chosen<'_> {
     /// The configurations, of each design if there are designs.
     pub(crate) fn source(&self, robot: &Mechanism) -> cylindroid::Result<Source> {
         let kinds = self.kinds(robot)?;
-        let chosen = match (&self.samples, &self.configurations) {
-            (None, None) => None,
-            (Some(_), _) => Some("samples"),
-            _ => Some("configurations"),
+        let chosen = match (&self.samples, &self.configurations, &self.reach) {
+            (None, None, None) => None,
+            (Some(_), ..) => Some("samples"),
+            (_, Some(_), _) => Some("configurations"),
+            _ => Some("reach"),
         };
         if let (Some(axis), Some(chosen)) = (kinds.coordinates.first(), chosen) {
             return Err(Error::InvalidOption {
@@ -72,6 +94,9 @@ impl Chosen<'_> {
                 value: axis.name.clone(),
                 reason: format!("a coordinate is an axis or one of --{chosen}, not both"),
             });
+        }
+        if let Some(grid) = &self.reach {
+            return Ok(Source::Voxels(grid.clone()));
         }
         if let Some(path) = self.configurations {
             let names = output::joint_names(robot);
@@ -95,6 +120,16 @@ impl Chosen<'_> {
             Source::Grid { axes, .. } => {
                 let counts: Vec<String> = axes.iter().map(|a| a.count.to_string()).collect();
                 format!("grid of {}", counts.join(" x "))
+            }
+            Source::Voxels(grid) => {
+                let counts: Vec<String> = grid.axes.iter().map(|a| a.count.to_string()).collect();
+                let orientations = match (grid.directions, grid.rolls) {
+                    (0, _) => "any orientation".to_owned(),
+                    (directions, 0) => format!("{directions} directions, any roll"),
+                    (directions, 1) => format!("{directions} directions"),
+                    (directions, rolls) => format!("{directions} directions x {rolls} rolls"),
+                };
+                format!("{} points, {orientations}", counts.join(" x "))
             }
             Source::Home => "home".to_owned(),
             _ if self.configurations.is_none() => "that of --q".to_owned(),

@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod book;
+mod capability;
 mod closed;
 mod distance;
 mod documents;

@@ -1872,6 +1872,10 @@ class SweepPlan:
         designs: int = 0,
         columns: Sequence[tuple[str, str, str, Callable[..., ArrayLike]]] = ...,
         direction: ArrayLike | None = None,
+        reach: dict[str, tuple[float, float, int]] | None = None,
+        directions: int = 50,
+        rolls: int = 12,
+        reach_from: ArrayLike | None = None,
     ) -> SweepPlan: ...
     @property
     def parts(self) -> int: ...

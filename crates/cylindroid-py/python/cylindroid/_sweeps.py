@@ -79,12 +79,17 @@ def sweep(
     columns: Mapping[str, Callable[..., ArrayLike] | SweepColumn] | None = None,
     engine: str | concurrent.futures.Executor | None = None,
     direction: ArrayLike | None = None,
+    reach: dict[str, tuple[float, float, int]] | None = None,
+    directions: int = 50,
+    rolls: int = 12,
+    reach_from: ArrayLike | None = None,
 ) -> Any:
-    """Quantities of many configurations: samples within the limits, a grid, or configurations.
+    """Quantities of many configurations: samples within the limits, a grid, or configurations; or of
+    the points of a capability map.
 
     Sample i is a function of `seed` and i alone, and results depend neither on the number of threads nor
     on the engine.
-    At most one of `samples`, coordinates in `over`, and `configurations` is given. With parameters of
+    At most one of `samples`, coordinates in `over`, `configurations` and `reach` is given. With parameters of
     the mechanism file in `over`, or with `vary`, all of it is computed for each design.
 
     Parameters
@@ -143,14 +148,29 @@ def sweep(
         need this version of the package and the model files, and, for a folder, its path. Ray computes
         the parts of a worker that died again; an executor whose worker died ends the sweep, which
         `resume` continues. Default: threads of this process.
+    reach : dict of str to (float, float, int), optional
+        A capability map: points with 'x', 'y' and 'z', of each its first and last value [m] and their
+        number; those not named are 0, z changes fastest. Inverse kinematics is asked at each point for
+        `directions` times `rolls` orientations of the tool, within the limits. Quantities are those
+        of which the best value over the solutions found is meant: 'yoshikawa',
+        'smallest_singular_value', 'condition', 'limit_distance' and 'payload'. Default: none.
+    directions : int
+        Approach directions of the tool's z axis, evenly spread over the sphere, in the plane angles;
+        0: positions alone.
+    rolls : int
+        Rotations about each direction; 0: any, for arms of five joints.
+    reach_from : array_like, (4, 4), optional
+        Placement of the axes of `reach` in the world. Default: the world.
 
     Returns
     -------
     dict of str to ndarray, (N,), or SweepSummary
         The columns: 'index', the coordinates by name, then those of the quantities. Of designs,
         'design', 'design_valid' and the parameters precede the coordinates; a design whose file
-        cannot be loaded with its values has 'design_valid' 0 and NaN. With `out` the summary of the
-        folder.
+        cannot be loaded with its values has 'design_valid' 0 and NaN. Of a capability map 'x', 'y',
+        'z', 'directions' and 'orientations' that are reached, 'reachability' and
+        'orientation_share', their shares, and 'best_' with the name of each quantity, NaN without a
+        solution. With `out` the summary of the folder.
 
     Raises
     ------
@@ -183,6 +203,13 @@ def sweep(
     ...                      columns={"bend": lambda q, names: abs(q).sum(1)})
     >>> list(found)[-2:]
     ['qz', 'bend']
+
+    The share of 20 directions in which an arm reaches three points:
+
+    >>> arm = cy.load("ur5e")
+    >>> found = cy.sweep(arm, reach={"x": (0.3, 1.1, 3), "z": (0.2, 0.2, 1)}, directions=20, rolls=4)
+    >>> found["reachability"]
+    array([1., 1., 0.])
     """
     own = _columns(columns, out is not None)
     arguments = {
@@ -202,6 +229,10 @@ def sweep(
         "designs": designs,
         "columns": own,
         "direction": direction,
+        "reach": reach,
+        "directions": directions,
+        "rolls": rolls,
+        "reach_from": reach_from,
     }
     plan = SweepPlan(**arguments)
     if not isinstance(resume, (bool, np.bool_)):

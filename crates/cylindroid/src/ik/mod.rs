@@ -28,6 +28,7 @@
 mod acceptance;
 mod analytic;
 mod ascent;
+mod attempt;
 mod avoidance;
 mod branches;
 mod closed_chain;

@@ -13,10 +13,12 @@
 use std::iter::once;
 use std::ops::Range;
 
+use super::axis::{Axis, points};
+use super::capability;
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
 use super::sobol::Sobol;
-use super::source::{Axis, Configurations, points};
+use super::source::Configurations;
 use super::table::{Column, Values};
 use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
@@ -268,7 +270,7 @@ impl Designs {
             match &prepared {
                 Ok((configurations, evaluator)) => {
                     let (rows, columns) = (start - first..end - first, &self.own_columns);
-                    evaluator.run(configurations, columns, rows, &mut own)?;
+                    capability::run(evaluator, configurations, columns, rows, &mut own)?;
                 }
                 Err(_) => own = self.own_columns.iter().map(|c| c.missing(count)).collect(),
             }

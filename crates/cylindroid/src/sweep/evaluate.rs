@@ -8,12 +8,13 @@
 use std::ops::Range;
 use std::slice::IterMut;
 
+use super::capability::{Search, Voxels};
 use super::columns::append;
 use super::options::{SweepOptions, VelocityMetric};
 use super::payload::Payload;
 use super::quantity::{PITCHES, Quantity};
 use super::singular_values::SingularValues;
-use super::source::Configurations;
+use super::source::{Configurations, Source};
 use super::table::{Column, Values, begin};
 use crate::closure::ClosedChain;
 use crate::error::{Error, Result};
@@ -33,7 +34,7 @@ const POSE: usize = 16;
 /// Computes rows.
 #[derive(Debug, Clone)]
 pub(super) struct Evaluator {
-    mechanism: Mechanism,
+    pub(super) mechanism: Mechanism,
     pub(super) quantities: Vec<Quantity>,
     pub(super) end_effector: EndEffector,
     /// Components of the twist that measures see.
@@ -45,6 +46,8 @@ pub(super) struct Evaluator {
     yoshikawa: Volume,
     payload: Option<Payload>,
     measures: Option<ManipulabilityBatch>,
+    /// Of a capability map.
+    pub(super) search: Option<Search>,
 }
 
 /// How the product of the singular values in the metric is found.
@@ -95,6 +98,13 @@ impl Evaluator {
         } else {
             None
         };
+        let search = match &options.source {
+            Source::Voxels(grid) => {
+                let voxels = Voxels::new(mechanism, grid)?;
+                Some(Search::new(mechanism, end_effector, (voxels, length))?)
+            }
+            _ => None,
+        };
         Ok(Self {
             mechanism: mechanism.clone(),
             quantities: options.quantities.clone(),
@@ -106,6 +116,7 @@ impl Evaluator {
             yoshikawa,
             payload,
             measures,
+            search,
         })
     }
 
@@ -145,6 +156,19 @@ impl Evaluator {
             start = end;
         }
         Ok(())
+    }
+
+    /// The quantities of these configurations, at most as many as `s` has memory for.
+    pub(super) fn of_configurations(
+        &self,
+        s: &mut Scratch,
+        q: &[f64],
+        columns: &mut [Values],
+    ) -> Result<()> {
+        columns.iter_mut().for_each(|values| values.begin(q.len()));
+        s.count = q.len() / self.mechanism.n();
+        s.q[..q.len()].copy_from_slice(q);
+        self.block(s, 0, &mut columns.iter_mut())
     }
 
     fn block(&self, s: &mut Scratch, start: u64, columns: &mut IterMut<'_, Values>) -> Result<()> {
@@ -283,7 +307,7 @@ impl Evaluator {
 }
 
 /// Memory of a block.
-struct Scratch {
+pub(super) struct Scratch {
     count: usize,
     q: Vec<f64>,
     poses: Vec<f64>,
@@ -292,7 +316,7 @@ struct Scratch {
 }
 
 impl Scratch {
-    fn new(e: &Evaluator, rows: usize) -> Self {
+    pub(super) fn new(e: &Evaluator, rows: usize) -> Self {
         use Quantity as Q;
         let n = e.mechanism.n();
         let of_values = [Q::SingularValues, Q::SmallestSingularValue, Q::Condition];

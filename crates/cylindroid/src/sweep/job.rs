@@ -4,18 +4,19 @@
 
 use std::ops::Range;
 
+use super::capability::{self, VoxelGrid};
 use super::designs::{DesignSpace, Designs};
 use super::evaluate::Evaluator;
 use super::options::{PART_ROWS, SweepOptions};
 use super::own_columns::{self, OwnColumn};
 use super::quantity::Quantity;
 use super::recipe::Recipe;
-use super::source::Configurations;
+use super::source::{Configurations, Source};
 use super::table::{Column, Table, Values};
 use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
-use crate::model::Mechanism;
+use crate::model::{Coordinate, Mechanism};
 use crate::task::Task;
 
 /// Parts at most: the manifest lists all of them.
@@ -42,13 +43,28 @@ impl Sweep {
     /// Rows of a part of [`Sweep::of_designs`] by default: fewer, for a design takes longer.
     pub const DESIGN_PART_ROWS: u64 = 1 << 10;
 
+    /// Points of a part of a capability map by default: a point takes as long as thousands of
+    /// configurations.
+    pub const VOXEL_PART_ROWS: u64 = 1 << 6;
+
+    /// Rows of a part that take a few seconds: of samples and files, of designs, of capability maps.
+    #[must_use]
+    pub fn usual_part_rows(source: &Source, has_designs: bool) -> u64 {
+        match source {
+            Source::Voxels(_) => Self::VOXEL_PART_ROWS,
+            _ if has_designs => Self::DESIGN_PART_ROWS,
+            _ => Self::PART_ROWS,
+        }
+    }
+
     /// Checks all options.
     ///
     /// # Errors
     /// Samples of a slider without limits or of a closed chain, an unknown or repeated coordinate,
     /// quantities that a closed chain does not have or that are named twice, unknown components, a
     /// length that is not positive, a metric of limits that a joint does not have, own columns without
-    /// a name or with that of another column.
+    /// a name or with that of another column; of a capability map own columns, quantities that are no
+    /// index, and orientations that too few joints reach.
     pub fn new(mechanism: &Mechanism, options: SweepOptions) -> Result<Self> {
         let refuse = |option: &'static str, value: String, reason: &str| {
             Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
@@ -65,10 +81,18 @@ impl Sweep {
         check_parts(configurations.rows, options.part_rows)?;
         let evaluator = Evaluator::new(mechanism, &options)?;
         let mut columns = vec![Column::count("index", "place in the sweep, from 0")];
-        let coordinates = mechanism.coordinates().iter();
-        columns.extend(coordinates.map(|c| Column::number(&c.name, c.kind.unit(), "coordinate")));
-        for quantity in &options.quantities {
-            columns.extend(quantity.columns(mechanism, evaluator.values()));
+        if evaluator.search.is_some() {
+            columns.extend(capability::columns(mechanism, &options.quantities)?);
+            if let Some(column) = options.columns.first() {
+                let reason = "own columns see configurations, which points of a grid have many of";
+                return refuse("columns", column.name.clone(), reason);
+            }
+        } else {
+            let unit = |c: &Coordinate| Column::number(&c.name, c.kind.unit(), "coordinate");
+            columns.extend(mechanism.coordinates().iter().map(unit));
+            for quantity in &options.quantities {
+                columns.extend(quantity.columns(mechanism, evaluator.values()));
+            }
         }
         check_names(&columns)?;
         columns.extend(own_columns::columns(&options.columns, &columns)?);
@@ -128,6 +152,12 @@ impl Sweep {
         self.designs.as_ref().map(|designs| designs.count)
     }
 
+    /// The points and orientations of a capability map; in the plane with one roll.
+    #[must_use]
+    pub fn voxels(&self) -> Option<&VoxelGrid> {
+        self.evaluator.search.as_ref().map(capability::Search::grid)
+    }
+
     /// The frame of poses and Jacobians.
     #[must_use]
     pub const fn end_effector(&self) -> EndEffector {
@@ -184,7 +214,7 @@ impl Sweep {
         }
         let others = &self.columns[..self.columns.len() - self.own.len()];
         let from = &self.configurations;
-        self.evaluator.run(from, others, rows.clone(), values)?;
+        capability::run(&self.evaluator, from, others, rows.clone(), values)?;
         values.extend(own_columns::run(&self.own, from, rows)?);
         Ok(())
     }

@@ -4,8 +4,9 @@
 //! Read in this order: `sobol` and `source` (configuration i as a function of i), `quantity` (the
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
 //! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder`
-//! (on disk, stopped and resumed), `shared_folder` (written by several processes). Two go their own
-//! way: `optimise` (the best designs) and `map` (the workspace in the coordinates of the platform).
+//! (on disk, stopped and resumed), `shared_folder` (written by several processes). `capability` has
+//! points of a grid in place of configurations. Two go their own way: `optimise` (the best designs)
+//! and `map` (the workspace in the coordinates of the platform).
 //!
 //! ```
 //! use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions};
@@ -22,6 +23,8 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 
+mod axis;
+mod capability;
 mod collect;
 mod columns;
 mod designs;
@@ -47,6 +50,8 @@ mod source;
 mod statistics;
 mod table;
 
+pub use axis::Axis;
+pub use capability::VoxelGrid;
 pub use designs::{AxisKinds, DesignSpace, ParameterRange};
 pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
@@ -64,6 +69,6 @@ pub use own_columns::{ColumnFunction, OwnColumn};
 pub use parquet_input::parquet_configurations;
 pub use quantity::Quantity;
 pub use shared_folder::SharedFolder;
-pub use source::{Axis, Source};
+pub use source::Source;
 pub use statistics::Statistics;
 pub use table::{Column, Table, Values};

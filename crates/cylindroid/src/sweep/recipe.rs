@@ -10,12 +10,13 @@ use std::fmt::{self, Display, Write};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
+use super::axis::Axis;
 use super::designs::{DesignSpace, Designs, ParameterRange};
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
 use super::own_columns::OwnColumn;
 use super::quantity::Quantity;
-use super::source::{Axis, Source};
+use super::source::Source;
 use crate::model::Mechanism;
 
 /// A JSON object.
@@ -128,6 +129,12 @@ fn source(source: &Source) -> Value {
         Source::Grid { axes, rest } => {
             json!({"over": axes.iter().map(axis).collect::<Vec<_>>(), "q": rest})
         }
+        Source::Voxels(grid) => json!({
+            "reach": grid.axes.iter().map(axis).collect::<Vec<_>>(),
+            "world_from_grid": grid.world_from_grid.to_matrix(),
+            "directions": grid.directions,
+            "rolls": grid.rolls,
+        }),
         Source::Configurations(q) => {
             let mut hasher = Sha256::new();
             q.iter().for_each(|x| hasher.update(x.to_le_bytes()));

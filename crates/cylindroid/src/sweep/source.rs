@@ -12,9 +12,11 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
+use super::axis::{Axis, points};
+use super::capability::{VoxelGrid, Voxels};
 use super::sobol::Sobol;
 use crate::error::{Error, Result};
-use crate::model::{CoordinateKind, Mechanism};
+use crate::model::{Coordinate, CoordinateKind, Mechanism};
 use crate::spatial::Quaternion;
 use crate::tolerance::MAX_MAGNITUDE;
 
@@ -41,32 +43,10 @@ pub enum Source {
     Home,
     /// These, one after the other, n numbers each (rad or m).
     Configurations(Vec<f64>),
-}
-
-/// An axis of a grid: `count` values from `from` to `to`, both included (rad or m).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    /// The coordinate.
-    pub name: String,
-    /// First value.
-    pub from: f64,
-    /// Last value.
-    pub to: f64,
-    /// Number of values; 1 is `from` alone.
-    pub count: u64,
-}
-
-impl Axis {
-    /// The value `i`.
-    #[must_use]
-    pub fn value(&self, i: u64) -> f64 {
-        let last = self.count.saturating_sub(1);
-        match i {
-            0 => self.from,
-            i if i == last => self.to,
-            i => self.from + (self.to - self.from) * (i as f64 / last as f64),
-        }
-    }
+    /// A capability map: no configurations but points of a grid, and orientations of the tool that
+    /// inverse kinematics is asked for there. Quantities are indices of which the best value over the
+    /// solutions is found.
+    Voxels(VoxelGrid),
 }
 
 /// A source for a mechanism, checked.
@@ -79,9 +59,19 @@ pub(super) struct Configurations {
 
 #[derive(Debug, Clone)]
 enum Kind {
-    Samples { sobol: Sobol, ranges: Vec<[f64; 2]>, rotations: Vec<usize> },
-    Grid { axes: Vec<Axis>, places: Vec<usize>, rest: Vec<f64> },
+    Samples {
+        sobol: Sobol,
+        ranges: Vec<[f64; 2]>,
+        rotations: Vec<usize>,
+    },
+    Grid {
+        axes: Vec<Axis>,
+        places: Vec<usize>,
+        rest: Vec<f64>,
+    },
     Given(Vec<f64>),
+    /// Points have no configurations of their own.
+    Voxels,
 }
 
 impl Configurations {
@@ -107,7 +97,8 @@ impl Configurations {
         let (rows, kind) = match source {
             Source::Samples { count, seed } => {
                 free("samples")?;
-                (*count, samples(mechanism, *count, *seed)?)
+                check_count(*count)?;
+                (*count, samples(mechanism, *seed)?)
             }
             Source::Grid { axes, rest } => {
                 free("over")?;
@@ -119,6 +110,10 @@ impl Configurations {
                 mechanism.check_rows("configurations", q)?;
                 (rows as u64, Kind::Given(q.clone()))
             }
+            Source::Voxels(grid) => {
+                free("reach")?;
+                (Voxels::new(mechanism, grid)?.rows(), Kind::Voxels)
+            }
         };
         Ok(Self { rows, n, kind })
     }
@@ -127,6 +122,7 @@ impl Configurations {
     pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) {
         let n = self.n;
         match &self.kind {
+            Kind::Voxels => {}
             Kind::Given(q) => {
                 let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX) * n;
                 out.copy_from_slice(&q[at(rows.start)..at(rows.end)]);
@@ -158,41 +154,54 @@ impl Configurations {
     }
 }
 
-fn samples(mechanism: &Mechanism, count: u64, seed: u64) -> Result<Kind> {
-    let n = mechanism.n();
-    let refuse = |option: &'static str, value: String, reason: String| {
-        Err(Error::InvalidOption { option, value, reason })
-    };
+fn refuse<T>(value: String, reason: String) -> Result<T> {
+    Err(Error::InvalidOption { option: "samples", value, reason })
+}
+
+fn check_count(count: u64) -> Result<()> {
     if count == 0 || count > 1 << 32 {
-        return refuse("samples", count.to_string(), "1 to 2^32 are possible".to_owned());
+        return refuse(count.to_string(), "1 to 2^32 are possible".to_owned());
     }
+    Ok(())
+}
+
+/// The range of an angle or a length.
+fn range(c: &Coordinate) -> Result<[f64; 2]> {
+    let (lower, upper) = (c.limits.lower, c.limits.upper);
+    match c.kind {
+        _ if lower.is_finite() && upper.is_finite() => Ok([lower, upper]),
+        CoordinateKind::Angle if lower.is_infinite() && upper.is_infinite() => Ok([-PI, PI]),
+        _ => refuse(
+            c.name.clone(),
+            format!(
+                "coordinate '{}' has no position limits on one side at least ({lower} to {upper} {}); \
+                 give it some, or a file of configurations",
+                c.name,
+                c.kind.unit()
+            ),
+        ),
+    }
+}
+
+fn samples(mechanism: &Mechanism, seed: u64) -> Result<Kind> {
+    let n = mechanism.n();
     if n > Sobol::DIMENSIONS {
         let most = Sobol::DIMENSIONS;
         let reason = format!("{n} coordinates, and samples have at most {most}; give a file");
-        return refuse("samples", mechanism.name().to_owned(), reason);
+        return refuse(mechanism.name().to_owned(), reason);
     }
     let (mut ranges, mut rotations) = (Vec::with_capacity(n), Vec::new());
     for (i, c) in mechanism.coordinates().iter().enumerate() {
-        let (lower, upper) = (c.limits.lower, c.limits.upper);
+        let is_limited = c.limits.lower.is_finite() && c.limits.upper.is_finite();
         ranges.push(match c.kind {
-            _ if lower.is_finite() && upper.is_finite() => [lower, upper],
-            CoordinateKind::Angle if lower.is_infinite() && upper.is_infinite() => [-PI, PI],
-            CoordinateKind::RotationVector => {
+            CoordinateKind::RotationVector if !is_limited => {
                 // Three beside one another, of one joint.
                 if rotations.last().is_none_or(|&r: &usize| i >= r + 3) {
                     rotations.push(i);
                 }
                 [0.0, 1.0]
             }
-            _ => {
-                let reason = format!(
-                    "coordinate '{}' has no position limits on one side at least ({lower} to {upper} \
-                     {}); give it some, or a file of configurations",
-                    c.name,
-                    c.kind.unit()
-                );
-                return refuse("samples", mechanism.name().to_owned(), reason);
-            }
+            _ => range(c)?,
         });
     }
     Ok(Kind::Samples { sobol: Sobol::new(n, seed), ranges, rotations })
@@ -204,19 +213,6 @@ fn rotation_vector([a, b, c]: [f64; 3]) -> [f64; 3] {
     let ((sin_b, cos_b), (sin_c, cos_c)) = ((TAU * b).sin_cos(), (TAU * c).sin_cos());
     let quaternion = Quaternion { w: t * cos_c, x: s * sin_b, y: s * cos_b, z: t * sin_c };
     quaternion.rotation().map_or([0.0; 3], |rotation| rotation.log().to_array())
-}
-
-/// Number of points of a grid.
-pub(super) fn points(axes: &[Axis]) -> Result<u64> {
-    axes.iter().try_fold(1_u64, |rows, axis| {
-        let reason = match rows.checked_mul(axis.count) {
-            Some(0) => "an axis has one value at least",
-            Some(rows) if rows <= 1 << 48 => return Ok(rows),
-            _ => "the grid has more than 2^48 points",
-        };
-        let (value, reason) = (axis.name.clone(), reason.to_owned());
-        Err(Error::InvalidOption { option: "over", value, reason })
-    })
 }
 
 fn grid(mechanism: &Mechanism, axes: &[Axis], rest: &[f64]) -> Result<(u64, Kind)> {

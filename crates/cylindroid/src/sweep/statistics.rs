@@ -6,10 +6,11 @@
 //!          tests/sweep/pinocchio.rs
 
 use std::num::NonZeroUsize;
+use std::ops::Range;
 
 use super::job::Sweep;
 use super::parts::run_parts;
-use super::table::Values;
+use super::table::{Table, Values};
 use super::{Column, Progress};
 use crate::error::Result;
 
@@ -40,12 +41,22 @@ enum Sum {
 
 impl Sum {
     fn of(values: &Values) -> Self {
+        Self::of_rows(values, 0..usize::MAX)
+    }
+
+    /// Of those of these rows that there are.
+    fn of_rows(values: &Values, rows: Range<usize>) -> Self {
+        let count = rows.end.saturating_sub(rows.start);
         match values {
-            Values::Numbers(numbers) => Self::numbers(numbers.iter().copied()),
-            Values::Counts(counts) => Self::numbers(counts.iter().map(|c| *c as f64)),
+            Values::Numbers(numbers) => {
+                Self::numbers(numbers.iter().copied().skip(rows.start).take(count))
+            }
+            Values::Counts(counts) => {
+                Self::numbers(counts.iter().map(|c| *c as f64).skip(rows.start).take(count))
+            }
             Values::Texts(texts) => {
                 let mut own = Self::Texts(Vec::new());
-                texts.iter().for_each(|text| own.count(text, 1));
+                texts.iter().skip(rows.start).take(count).for_each(|text| own.count(text, 1));
                 own
             }
         }
@@ -136,9 +147,25 @@ impl Sweep {
             parts[part] = Some(sums);
         };
         run_parts(self.parts(), threads, work, finished, || Ok(observe(&progress.get())))?;
+        let parts: Option<Vec<Vec<Sum>>> = parts.into_iter().collect();
+        Ok(parts.map(|parts| self.of_parts(parts)))
+    }
+
+    /// The same of all rows, which were collected.
+    #[must_use]
+    pub fn statistics_of(&self, table: &Table) -> Vec<(Column, Statistics)> {
+        let part = |part: usize| {
+            let rows = self.rows_of(part);
+            let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX);
+            let rows = at(rows.start)..at(rows.end);
+            table.values.iter().skip(1).map(|all| Sum::of_rows(all, rows.clone())).collect()
+        };
+        self.of_parts((0..self.parts()).map(part).collect())
+    }
+
+    fn of_parts(&self, parts: Vec<Vec<Sum>>) -> Vec<(Column, Statistics)> {
         let mut all: Option<Vec<Sum>> = None;
         for part in parts {
-            let Some(part) = part else { return Ok(None) };
             match &mut all {
                 None => all = Some(part),
                 Some(all) => all.iter_mut().zip(&part).for_each(|(sum, more)| sum.add(more)),
@@ -146,6 +173,6 @@ impl Sweep {
         }
         let columns = self.columns.iter().skip(1).cloned();
         let statistics = all.into_iter().flatten().map(Sum::statistics);
-        Ok(Some(columns.zip(statistics).collect()))
+        columns.zip(statistics).collect()
     }
 }

@@ -49,6 +49,12 @@ impl Column {
         Self { name: name.to_owned(), unit, description: "parameter", kind: ColumnKind::Number }
     }
 
+    /// True for numbers, whole ones too; false for names.
+    #[must_use]
+    pub const fn is_number(&self) -> bool {
+        matches!(self.kind, ColumnKind::Number | ColumnKind::Count)
+    }
+
     /// Entries of rows without results.
     pub(super) fn missing(&self, rows: usize) -> Values {
         match self.kind {
@@ -128,6 +134,18 @@ impl Values {
             (Self::Counts(own), Self::Counts(more)) => own.extend(more),
             (Self::Texts(own), Self::Texts(more)) => own.extend(more),
             _ => {}
+        }
+    }
+}
+
+impl Values {
+    /// Some of them, whole ones as real numbers; `None` for names and for rows that are not there.
+    #[must_use]
+    pub fn to_numbers(&self, rows: std::ops::Range<usize>) -> Option<Vec<f64>> {
+        match self {
+            Self::Numbers(numbers) => numbers.get(rows).map(<[f64]>::to_vec),
+            Self::Counts(counts) => Some(counts.get(rows)?.iter().map(|c| *c as f64).collect()),
+            Self::Texts(_) => None,
         }
     }
 }

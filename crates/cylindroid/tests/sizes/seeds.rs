@@ -426,6 +426,18 @@ fn sweeps(world: &mut World) {
         Source::Home,
         Source::Configurations(vec![]),
         Source::Configurations(vec![0.0]),
+        Source::Voxels(VoxelGrid::default()),
+        Source::Voxels(VoxelGrid {
+            axes: vec![Axis { name: "x".to_owned(), ..axis.clone() }],
+            directions: 1,
+            rolls: 0,
+            ..VoxelGrid::default()
+        }),
+        Source::Voxels(VoxelGrid {
+            axes: vec![Axis { name: "x".to_owned(), ..axis.clone() }],
+            directions: 0,
+            ..VoxelGrid::default()
+        }),
     ];
     for source in sources {
         for quantities in [vec![], vec![Quantity::Pose], vec![Quantity::Measures]] {

@@ -7,6 +7,7 @@
     clippy::float_cmp_const
 )]
 
+mod capability;
 mod designs;
 mod folder;
 mod optimise;

@@ -1,8 +1,9 @@
 //! A small sweep as one CSV file.
 
+use std::borrow::Cow;
 use std::path::Path;
 
-use cylindroid::sweep::{Progress, Sweep, Values};
+use cylindroid::sweep::{Progress, Sweep, Table, Values};
 use cylindroid::{Error, Result};
 
 /// Rows of a CSV file at most.
@@ -10,10 +11,11 @@ const MOST: u64 = 1_000_000;
 /// Rows computed at once.
 const BLOCK: u64 = 4096;
 
-/// Writes all rows under a temporary name, renames, and returns the size (bytes); `None` if
-/// `observe` stopped it.
+/// Writes all rows, which may be there as a table, under a temporary name, renames, and returns the
+/// size (bytes); `None` if `observe` stopped it.
 pub(super) fn write(
     sweep: &Sweep,
+    table: Option<&Table>,
     path: &Path,
     observe: impl Fn(&Progress) -> bool,
 ) -> Result<Option<u64>> {
@@ -29,7 +31,7 @@ pub(super) fn write(
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".tmp");
     let temporary = path.with_file_name(name);
-    let finished = lines(sweep, &temporary, observe, &cannot);
+    let finished = lines((sweep, table), &temporary, observe, &cannot);
     match finished {
         Ok(true) => {
             std::fs::rename(&temporary, path).map_err(|e| cannot(e.to_string()))?;
@@ -44,23 +46,30 @@ pub(super) fn write(
 }
 
 fn lines(
-    sweep: &Sweep,
+    (sweep, table): (&Sweep, Option<&Table>),
     path: &Path,
     observe: impl Fn(&Progress) -> bool,
     cannot: &dyn Fn(String) -> Error,
 ) -> Result<bool> {
     let failed = |e: csv::Error| cannot(e.to_string());
-    let rows = sweep.rows();
+    let all = sweep.rows();
     let mut writer = csv::Writer::from_path(path).map_err(failed)?;
     writer.write_record(sweep.columns().iter().map(|c| &c.name)).map_err(failed)?;
     let mut start = 0;
-    while start < rows {
-        if !observe(&Progress { rows, done: start, computed: start }) {
+    while start < all {
+        if !observe(&Progress { rows: all, done: start, computed: start }) {
             return Ok(false);
         }
-        let end = rows.min(start + BLOCK);
-        let table = sweep.table(start..end)?;
-        for i in 0..table.rows() {
+        let end = all.min(start + BLOCK);
+        let (table, rows) = match table {
+            Some(table) => (Cow::Borrowed(table), start as usize..end as usize),
+            None => {
+                let table = sweep.table(start..end)?;
+                let rows = 0..table.rows();
+                (Cow::Owned(table), rows)
+            }
+        };
+        for i in rows {
             let cell = |values: &Values| match values {
                 Values::Numbers(numbers) => numbers[i].to_string(),
                 Values::Counts(counts) => counts[i].to_string(),

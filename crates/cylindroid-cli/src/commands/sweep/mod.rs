@@ -1,6 +1,7 @@
 //! `sweep`: quantities of millions of configurations.
 
 mod csv_file;
+mod drawing;
 mod report;
 
 use std::cell::Cell;
@@ -10,7 +11,8 @@ use std::time::Instant;
 
 use cylindroid::control::Task;
 use cylindroid::sweep::{
-    Axis, DesignSpace, ParameterRange, Progress, Quantity, Sweep, SweepOptions, WriteOptions,
+    Axis, DesignSpace, ParameterRange, Progress, Quantity, Source, Sweep, SweepOptions,
+    WriteOptions,
 };
 use cylindroid::{Error, Vec3};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -22,21 +24,24 @@ use crate::commands::interrupt::Interrupt;
 use crate::commands::shared::{Style, end_effector, load, parametric};
 use crate::exit::Exit;
 use crate::output;
+use crate::plot;
 
 pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.model, &[])?;
     let chosen = Chosen::from(args);
     let source = chosen.source(&robot)?;
-    let space = designs(chosen.parameters(&robot)?, args)?;
+    let parameters = chosen.parameters(&robot)?;
+    let space = designs(parameters.clone(), args)?;
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
+    let is_map = matches!(source, Source::Voxels(_));
     let quantities = if args.quantities.is_empty() {
-        Quantity::usual(&robot).to_vec()
+        if is_map { Vec::new() } else { Quantity::usual(&robot).to_vec() }
     } else {
         args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?
     };
     let task = args.task.as_deref().map(|name| Task::named(name, &robot)).transpose()?;
-    let part_rows = if space.is_some() { Sweep::DESIGN_PART_ROWS } else { Sweep::PART_ROWS };
+    let part_rows = Sweep::usual_part_rows(&source, space.is_some());
     let options = SweepOptions {
         source: source.clone(),
         quantities,
@@ -54,6 +59,14 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         None => Sweep::new(&robot, options)?,
         Some(space) => Sweep::of_designs(&parametric(&args.model)?, space, options)?,
     };
+    let picture = match &args.plot {
+        None => None,
+        Some(path) => {
+            plot::check(path)?;
+            let axes = (&source, &parameters[..]);
+            Some((plot::sweep::plan(&robot, &sweep, axes, args.color.as_deref())?, path))
+        }
+    };
     let head = Head::of(&robot, &sweep, &source, args);
     let interrupt = Interrupt::new();
     let started = Instant::now();
@@ -62,8 +75,23 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         bar.show(progress);
         !interrupt.came()
     };
+    // Rows that are drawn too are computed once, and those of a CSV file by all threads where they
+    // take long.
+    let is_folder = args.out.as_deref().is_some_and(|path| !is_csv(path));
+    let is_drawn = picture.as_ref().is_some_and(|(picture, _)| picture.is_of_all());
+    let collected = !is_folder && (is_drawn || is_map && args.out.is_some());
+    let table = match collected {
+        true => match sweep.collect(args.threads, observe)? {
+            Some(table) => Some(table),
+            None => return interrupted(),
+        },
+        false => None,
+    };
     let outcome = match &args.out {
-        None => sweep.statistics(args.threads, observe)?.map(Outcome::Statistics),
+        None => match &table {
+            Some(table) => Some(Outcome::Statistics(sweep.statistics_of(table))),
+            None => sweep.statistics(args.threads, observe)?.map(Outcome::Statistics),
+        },
         Some(path) if is_csv(path) => {
             if args.resume {
                 return Err(Error::InvalidOption {
@@ -73,7 +101,8 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
                 }
                 .into());
             }
-            csv_file::write(&sweep, path, observe)?.map(|bytes| Outcome::File { path, bytes })
+            let written = csv_file::write(&sweep, table.as_ref(), path, observe)?;
+            written.map(|bytes| Outcome::File { path, bytes })
         }
         Some(folder) => {
             let options = WriteOptions { threads: args.threads, resume: args.resume };
@@ -83,15 +112,21 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     };
     drop(bar);
     let seconds = started.elapsed().as_secs_f64();
-    let Some(outcome) = outcome else {
-        writeln!(std::io::stderr(), "interrupted")?;
-        return Ok(Exit::INTERRUPTED);
-    };
+    let Some(outcome) = outcome else { return interrupted() };
+    if let (Some((picture, path)), true) = (picture, outcome.complete()) {
+        let folder = args.out.as_deref().filter(|_| is_folder);
+        picture.draw(&drawing::columns(&sweep, &picture, table.as_ref(), folder)?, path)?;
+    }
     match style {
         Style::Json => output::json(out, &outcome.json(&head, seconds))?,
         Style::Table => outcome.print(&head, out)?,
     }
     Ok(if outcome.complete() { Exit::SUCCESS } else { Exit::INTERRUPTED })
+}
+
+fn interrupted() -> anyhow::Result<Exit> {
+    writeln!(std::io::stderr(), "interrupted")?;
+    Ok(Exit::INTERRUPTED)
 }
 
 fn is_csv(path: &Path) -> bool {

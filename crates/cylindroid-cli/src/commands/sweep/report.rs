@@ -36,7 +36,8 @@ impl<'a> Head<'a> {
     ) -> Self {
         let all = sweep.rows();
         let rows = all / sweep.designs().unwrap_or(1).max(1);
-        let configurations = Chosen::from(args).words(source, rows);
+        let of_map = sweep.voxels().map(|grid| Source::Voxels(grid.clone()));
+        let configurations = Chosen::from(args).words(of_map.as_ref().unwrap_or(source), rows);
         let configurations = match sweep.designs() {
             None => configurations,
             Some(designs) => format!("{configurations} of {designs} designs"),

@@ -11,11 +11,12 @@
 //! Checked  tests/sweep/optimise.rs::indices_are_those_of_the_sweep,
 //!          tests/sweep/optimise.rs::designs_without_an_index_are_told
 
+use super::super::axis::Axis;
+use super::super::capability;
 use super::super::designs::{DesignSpace, Designs, ParameterRange};
 use super::super::job::Sweep;
 use super::super::options::SweepOptions;
 use super::super::quantity::Quantity;
-use super::super::source::Axis;
 use super::super::table::{Column, ColumnKind, Values};
 use super::options::{DesignObjective, OptimisationOptions, Sense, Statistic};
 use crate::closure::ParametricModel;
@@ -200,8 +201,7 @@ impl Indices {
         let (mut start, mut rows) = (0, Vec::new());
         while start < configurations.rows {
             let end = configurations.rows.min(start + ROWS);
-            evaluator
-                .run(&configurations, columns, start..end, &mut rows)
+            capability::run(&evaluator, &configurations, columns, start..end, &mut rows)
                 .map_err(|error| without(error.to_string()))?;
             if let Some(Values::Counts(closed)) = self.closed.and_then(|place| rows.get(place))
                 && let Some(row) = closed.iter().position(|closed| *closed == 0)

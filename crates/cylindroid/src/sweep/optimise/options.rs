@@ -2,9 +2,10 @@
 //!
 //! Checked  tests/sweep/optimise.rs::wrong_options_are_refused
 
+use super::super::axis::Axis;
 use super::super::designs::ParameterRange;
 use super::super::options::SweepOptions;
-use super::super::source::{Axis, Source};
+use super::super::source::Source;
 use crate::error::{Error, Result};
 
 /// What [`Optimisation`](super::Optimisation) does; [`Optimisation::new`](super::Optimisation::new)

@@ -46,7 +46,9 @@ mod prelude {
     pub(super) use cylindroid::linalg::{Metric, Qr, Svd, SymmetricEigen};
     pub(super) use cylindroid::model::formats::srdf::Srdf;
     pub(super) use cylindroid::model::{Builder, Inclusion, JointLimits, LoadReport, Visual};
-    pub(super) use cylindroid::sweep::{Optimisation, Part, SharedFolder, Sweep, WriteOptions};
+    pub(super) use cylindroid::sweep::{
+        Optimisation, Part, SharedFolder, Sweep, Values, WriteOptions,
+    };
     pub(super) use cylindroid::*;
 
     pub(super) use super::calls;

@@ -5,6 +5,7 @@ use super::prelude::*;
 calls! {
     sweep::Axis::value;
     sweep::AxisKinds::of;
+    sweep::Column::is_number;
     sweep::DesignObjective::name;
     sweep::DesignObjective::named;
     sweep::LocusKind::name;
@@ -45,13 +46,17 @@ calls! {
     sweep::Sweep::rows;
     sweep::Sweep::rows_in;
     sweep::Sweep::statistics = |s: &'static Sweep, threads: Option<NonZeroUsize>, go_on: bool| s.statistics(threads, |_| go_on);
+    sweep::Sweep::statistics_of;
     sweep::Sweep::table;
     sweep::Sweep::task;
+    sweep::Sweep::usual_part_rows;
+    sweep::Sweep::voxels;
     sweep::Sweep::write = |s: &'static Sweep, to: &'static Path, how: &'static WriteOptions, go_on: bool| s.write(to, how, |_| go_on);
     sweep::Sweep::write_part;
     sweep::Table::column;
     sweep::Table::numbers;
     sweep::Table::rows;
+    sweep::Values::to_numbers = |v: &'static Values, from: usize, to: usize| v.to_numbers(from..to);
     sweep::VelocityMetric::name;
     sweep::VelocityMetric::named;
     sweep::WorkingMode::cells;
