@@ -177,7 +177,7 @@ impl PySweepPlan {
         let end_effector =
             if chosen { Some(robot.end_effector(frame, tool.as_ref())?) } else { None };
         let own = OwnColumns::new(columns);
-        let part_rows = Sweep::usual_part_rows(&source, space.is_some());
+        let part_rows = Sweep::usual_part_rows(&mechanism, &source, space.is_some());
         let options = SweepOptions {
             source,
             quantities,

@@ -164,7 +164,10 @@ def test_what_is_not_given(tmp_path):
     with pytest.raises(cy.InvalidOptionError, match="resume"):
         cy.sweep(robot, samples=10, resume=True)
     with pytest.raises(cy.InvalidOptionError, match="loops"):
-        cy.sweep(cy.load("five-bar"), samples=10)
+        cy.sweep(cy.load("five-bar"), over={"q1": (0.0, 1.0, 3)})
+    found = cy.sweep(cy.load("five-bar"), samples=40)
+    lost = found["closed"] == 0
+    assert (np.isnan(found["q3"]) == lost).all() and 0 < lost.sum() < 40
     with pytest.raises(cy.UnknownNameError, match="yoshikawa"):
         cy.sweep(robot, samples=10, quantities=["yoshikava"])
 

@@ -51,7 +51,7 @@ Quantities:
   gibson_hunt              class and principal pitches of the screw system
   measures                 mobility, distances to singularities, kinematic efficiencies, in --metric
 
-For closed chains: pose, limit_distance, payload and measures, of --configurations. For --reach: \
+For closed chains: pose, limit_distance, payload and measures. For --reach: \
 yoshikawa, smallest_singular_value, condition, limit_distance and payload. Exit code 130 after an \
 interrupt.";
 
@@ -62,7 +62,7 @@ pub(crate) struct SweepArgs {
     pub(crate) model: ModelArgs,
 
     /// Number of samples within the position limits, e.g. 1e6; joints without limits rotate
-    /// through -pi to pi
+    /// through -pi to pi. Of a closed chain those of the actuated joints, the others follow from home
     #[arg(long, value_name = "N", group = "sampled", allow_hyphen_values = true)]
     #[arg(required_unless_present_any = ["over", "vary", "configurations", "reach"])]
     pub(crate) samples: Option<Count>,

@@ -72,6 +72,6 @@ fn wrong_objectives_are_refused() {
     assert!(message.contains("not both"), "{message}");
     let message = refused(&with(&["--minimise", "volume", "--designs", "0"]));
     assert!(message.contains("--designs = 0"), "{message}");
-    let message = refused(&with(&["--minimise", "volume", "--samples", "5"]));
+    let message = refused(&with(&["--minimise", "volume", "--over", "left_drive=0:1:3"]));
     assert!(message.contains("loops leave no free choice"), "{message}");
 }

@@ -98,7 +98,8 @@ def sweep(
         Samples and grids need one without loops.
     samples : int, optional
         Number of points of a scrambled Sobol' sequence within the position limits; joints without
-        limits rotate through [-pi, pi).
+        limits rotate through [-pi, pi). Of a closed chain those of the actuated joints, with the others
+        on the branch of home; a sample that no straight path reaches has NaN.
     seed : int
         Selects one of the sequences.
     over : dict of str to (float, float, int), optional

@@ -146,13 +146,17 @@ impl Evaluator {
             let end = rows.end.min(start + BLOCK as u64);
             let count = usize::try_from(end - start).unwrap_or(0);
             scratch.count = count;
-            from.write(start..end, &mut scratch.q[..count * n]);
+            let absent = from.write(start..end, &mut scratch.q[..count * n]);
             let mut columns = out.iter_mut();
             if let Some(Values::Counts(index)) = columns.next() {
                 index.extend(start..end);
             }
             put(&scratch.q[..count * n], n, n, &mut columns);
             self.block(&mut scratch, start, &mut columns)?;
+            let first = usize::try_from(start - rows.start).unwrap_or(0);
+            for values in out.iter_mut().skip(1) {
+                absent.iter().for_each(|row| values.blank(first + row));
+            }
             start = end;
         }
         Ok(())

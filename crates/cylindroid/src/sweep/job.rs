@@ -47,11 +47,13 @@ impl Sweep {
     /// configurations.
     pub const VOXEL_PART_ROWS: u64 = 1 << 6;
 
-    /// Rows of a part that take a few seconds: of samples and files, of designs, of capability maps.
+    /// Rows of a part that take a few seconds: of samples and files, of designs and samples of closed
+    /// chains, of capability maps.
     #[must_use]
-    pub fn usual_part_rows(source: &Source, has_designs: bool) -> u64 {
+    pub fn usual_part_rows(mechanism: &Mechanism, source: &Source, has_designs: bool) -> u64 {
         match source {
             Source::Voxels(_) => Self::VOXEL_PART_ROWS,
+            Source::Samples { .. } if mechanism.is_closed() => Self::DESIGN_PART_ROWS,
             _ if has_designs => Self::DESIGN_PART_ROWS,
             _ => Self::PART_ROWS,
         }

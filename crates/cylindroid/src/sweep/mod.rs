@@ -25,6 +25,7 @@
 
 mod axis;
 mod capability;
+mod closed_samples;
 mod collect;
 mod columns;
 mod designs;

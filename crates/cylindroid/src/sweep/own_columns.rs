@@ -76,7 +76,7 @@ pub(super) fn run(
     }
     let count = usize::try_from(rows.end - rows.start).unwrap_or(0);
     let mut q = vec![0.0; count * from.n];
-    from.write(rows.clone(), &mut q);
+    let absent = from.write(rows.clone(), &mut q);
     let of = |column: &OwnColumn| {
         let failed = |reason: String| {
             let last = rows.end.saturating_sub(1);
@@ -87,7 +87,9 @@ pub(super) fn run(
             let got = found.len();
             return Err(failed(format!("{got} values, where {count} rows need one each")));
         }
-        Ok(Values::Numbers(found))
+        let mut found = Values::Numbers(found);
+        absent.iter().for_each(|row| found.blank(*row));
+        Ok(found)
     };
     own.iter().map(of).collect()
 }

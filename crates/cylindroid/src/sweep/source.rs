@@ -4,8 +4,9 @@
 //!          bodies by quaternions uniform on the sphere. Grids: the last axis changes fastest
 //! Shapes   q: rows x n, row-major
 //! Units    rad, m
-//! Valid    samples and grids: mechanisms without loops, whose configurations are free. Samples:
-//!          position limits on every slider; a joint without limits is sampled in [-pi, pi)
+//! Valid    grids: mechanisms without loops, whose configurations are free; samples of closed chains are
+//!          in closed_samples.rs. Samples: position limits on every slider; a joint without limits is
+//!          sampled in [-pi, pi)
 //! Source   Shoemake 1992 (uniform rotations)
 //! Checked  tests/sweep/sampling.rs
 
@@ -14,6 +15,7 @@ use std::ops::Range;
 
 use super::axis::{Axis, points};
 use super::capability::{VoxelGrid, Voxels};
+use super::closed_samples::ClosedSamples;
 use super::sobol::Sobol;
 use crate::error::{Error, Result};
 use crate::model::{Coordinate, CoordinateKind, Mechanism};
@@ -25,7 +27,8 @@ use crate::tolerance::MAX_MAGNITUDE;
 #[non_exhaustive]
 pub enum Source {
     /// Scrambled Sobol' points within the position limits; joints without limits turn through
-    /// [-pi, pi).
+    /// [-pi, pi). Of a closed chain those of the actuated joints, with the others on the branch of
+    /// home; a sample that no straight path of the actuated joints reaches has no numbers.
     Samples {
         /// Number of configurations.
         count: u64,
@@ -70,6 +73,7 @@ enum Kind {
         rest: Vec<f64>,
     },
     Given(Vec<f64>),
+    Closed(ClosedSamples),
     /// Points have no configurations of their own.
     Voxels,
 }
@@ -96,9 +100,15 @@ impl Configurations {
         };
         let (rows, kind) = match source {
             Source::Samples { count, seed } => {
-                free("samples")?;
                 check_count(*count)?;
-                (*count, samples(mechanism, *seed)?)
+                let kind = match mechanism.is_closed() {
+                    true => {
+                        let range = |c: usize| range(&mechanism.coordinates()[c]);
+                        Kind::Closed(ClosedSamples::new(mechanism, *seed, range)?)
+                    }
+                    false => samples(mechanism, *seed)?,
+                };
+                (*count, kind)
             }
             Source::Grid { axes, rest } => {
                 free("over")?;
@@ -118,11 +128,13 @@ impl Configurations {
         Ok(Self { rows, n, kind })
     }
 
-    /// Those of `rows` into `out`.
-    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) {
+    /// Those of `rows` into `out`. Samples of a closed chain that have no configuration have home, and
+    /// are returned.
+    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Vec<usize> {
         let n = self.n;
         match &self.kind {
             Kind::Voxels => {}
+            Kind::Closed(samples) => return samples.write(rows, out),
             Kind::Given(q) => {
                 let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX) * n;
                 out.copy_from_slice(&q[at(rows.start)..at(rows.end)]);
@@ -151,6 +163,7 @@ impl Configurations {
                 }
             }
         }
+        Vec::new()
     }
 }
 

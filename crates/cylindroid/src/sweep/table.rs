@@ -109,6 +109,15 @@ impl Values {
         own == kind
     }
 
+    /// Replaces an entry by that of a row without results.
+    pub(super) fn blank(&mut self, row: usize) {
+        match self {
+            Self::Numbers(own) => own[row] = f64::NAN,
+            Self::Counts(own) => own[row] = 0,
+            Self::Texts(own) => own[row] = "",
+        }
+    }
+
     /// Without entries, and with room for so many.
     pub(super) fn begin(&mut self, rows: usize) {
         match self {

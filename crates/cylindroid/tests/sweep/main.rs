@@ -8,6 +8,7 @@
 )]
 
 mod capability;
+mod closed_samples;
 mod designs;
 mod folder;
 mod optimise;

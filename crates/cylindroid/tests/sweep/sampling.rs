@@ -140,11 +140,12 @@ fn grids_have_their_last_axis_first() {
     assert!(refused(vec![two.clone(), two]).contains("one axis only"));
 }
 
-/// Closed chains have no samples; closed configurations of theirs are swept.
+/// Closed chains have no grids of their coordinates; closed configurations of theirs are swept.
 #[test]
 fn closed_chains_need_configurations() {
     let five_bar = cylindroid::load("five-bar").unwrap();
-    let source = Source::Samples { count: 4, seed: 0 };
+    let axis = Axis { name: "q1".to_owned(), from: 0.0, to: 1.0, count: 3 };
+    let source = Source::Grid { axes: vec![axis], rest: vec![] };
     let quantities = vec![Quantity::Measures];
     let options = SweepOptions { source, quantities, ..Default::default() };
     let error = Sweep::new(&five_bar, options).unwrap_err();

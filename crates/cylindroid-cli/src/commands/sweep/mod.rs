@@ -41,7 +41,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?
     };
     let task = args.task.as_deref().map(|name| Task::named(name, &robot)).transpose()?;
-    let part_rows = Sweep::usual_part_rows(&source, space.is_some());
+    let part_rows = Sweep::usual_part_rows(&robot, &source, space.is_some());
     let options = SweepOptions {
         source: source.clone(),
         quantities,
