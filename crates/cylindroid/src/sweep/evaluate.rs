@@ -12,6 +12,7 @@ use super::capability::{Search, Voxels};
 use super::columns::append;
 use super::options::{SweepOptions, VelocityMetric};
 use super::payload::Payload;
+use super::poses::{self, POSE};
 use super::quantity::{PITCHES, Quantity};
 use super::singular_values::SingularValues;
 use super::source::{Configurations, Source};
@@ -23,13 +24,10 @@ use crate::linalg::Matrix;
 use crate::manipulability::{BatchOptions, ManipulabilityBatch, Metrics};
 use crate::model::{Dimension, Mechanism};
 use crate::screws::{ScrewOptions, ScrewSystem};
-use crate::spatial::Mat3;
 use crate::task::Task;
 
 /// Rows computed at once.
 const BLOCK: usize = 1024;
-/// Numbers of a pose.
-const POSE: usize = 16;
 
 /// Computes rows.
 #[derive(Debug, Clone)]
@@ -204,9 +202,7 @@ impl Evaluator {
         for quantity in &self.quantities {
             match quantity {
                 Q::Pose => {
-                    let seven: Vec<[f64; 7]> =
-                        poses.chunks_exact(POSE).map(position_and_quaternion).collect();
-                    put(seven.as_flattened(), 7, 7, columns);
+                    poses::append(poses, &mut numbers(columns, 7));
                 }
                 Q::Jacobian => put(jacobians, 6 * n, 6 * n, columns),
                 Q::SingularValues => put(scaled, k, k, columns),
@@ -360,12 +356,6 @@ fn numbers<'a>(columns: &mut IterMut<'a, Values>, count: usize) -> Vec<&'a mut V
         _ => None,
     });
     own.collect()
-}
-
-fn position_and_quaternion(m: &[f64]) -> [f64; 7] {
-    let rows = [[m[0], m[1], m[2]], [m[4], m[5], m[6]], [m[8], m[9], m[10]]];
-    let q = crate::spatial::Quaternion::of_matrix(Mat3::from_rows(rows));
-    [m[3], m[7], m[11], q.w, q.x, q.y, q.z]
 }
 
 /// The components of the twist that are meant: rows of the Jacobian.

@@ -42,6 +42,7 @@ mod parquet_file;
 mod parquet_input;
 mod parts;
 mod payload;
+mod poses;
 mod quantity;
 mod recipe;
 mod shared_folder;

@@ -60,6 +60,11 @@ fn of_length<R: SimdFloat>(
             let (a, b) = (&mut head[i * rows..][..rows], &mut tail[..rows]);
             let (aa, bb, ab) = (values[i], values[j], dot(a, b));
             let (square, product) = (ab * ab, aa * bb);
+            oblique = R::select_lt(k(NEARLY) * product, square, one, oblique);
+            // Towards the end most pairs are orthogonal in all lanes: nothing would change.
+            if R::select_lt(limit * product, square, one, zero).all_abs_le(0.0) {
+                continue;
+            }
             let difference = bb - aa;
             let double = ab + ab;
             let h = difference.mul_add(difference, double * double).sqrt();
@@ -74,7 +79,6 @@ fn of_length<R: SimdFloat>(
             }
             values[i] = (-t).mul_add(ab, aa).max(zero);
             values[j] = t.mul_add(ab, bb);
-            oblique = R::select_lt(k(NEARLY) * product, square, one, oblique);
         }
         limit = R::select_lt(zero, oblique, limit, k(f64::MAX));
         if oblique.all_abs_le(0.0) {
