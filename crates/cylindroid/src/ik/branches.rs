@@ -24,8 +24,6 @@ const SEGMENT_MARGIN: f64 = 0.1;
 /// A solution for one value of the locked joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
-    /// Its place on the grid of values.
-    pub(super) index: i32,
     pub(super) value: f64,
     pub(super) angles: [f64; 6],
     /// Squared distance from the preferred configuration.
@@ -71,35 +69,48 @@ pub(super) struct Place {
     pub(super) sample: Sample,
 }
 
-/// The samples by values of the locked joint: 0, 1, -1, 2, -2, ... steps from the preferred one.
+/// The samples, grouped by values of the locked joint.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
     pub(super) all: Vec<Sample>,
-    groups: Vec<Range<usize>>,
+    groups: Vec<Group>,
 }
 
-/// The value that is sampled as number k, in steps.
+/// The samples of one value.
+#[derive(Debug, Clone)]
+struct Group {
+    value: f64,
+    /// Solutions of the closed form, also those outside the limits.
+    solutions: usize,
+    own: Range<usize>,
+}
+
+/// The value that is sampled as number k, in steps: 0, 1, -1, 2, -2, ...
 pub(super) const fn index_of(k: i32) -> i32 {
     if k % 2 == 0 { -(k / 2) } else { (k + 1) / 2 }
 }
 
 impl Samples {
-    /// Ends the samples of the next value.
-    pub(super) fn end_group(&mut self) {
-        let first = self.groups.last().map_or(0, |group| group.end);
-        self.groups.push(first..self.all.len());
+    /// Ends the samples of a value, with this number of solutions inside and outside the limits.
+    pub(super) fn end_group(&mut self, value: f64, solutions: usize) {
+        let first = self.groups.iter().map(|group| group.own.end).max().unwrap_or(0);
+        let own = first..self.all.len();
+        let place = self.groups.partition_point(|group| group.value < value);
+        self.groups.insert(place, Group { value, solutions, own });
     }
 
-    /// The samples of a value.
-    fn group(&self, index: i32) -> &[Sample] {
-        let k = if index > 0 { 2 * index - 1 } else { -2 * index };
-        let group = usize::try_from(k).ok().and_then(|k| self.groups.get(k));
-        group.map_or(&[], |group| &self.all[group.clone()])
+    /// The middle between two neighbouring values with different numbers of solutions, of the gaps
+    /// from `place` on, if they are further apart than `least`; and the place of the gap.
+    pub(super) fn fold_between(&self, place: usize, least: f64) -> Option<(usize, f64)> {
+        let gaps = self.groups.windows(2).enumerate().skip(place);
+        gaps.filter(|(_, gap)| gap[0].solutions != gap[1].solutions)
+            .find(|(_, gap)| gap[1].value - gap[0].value > least)
+            .map(|(i, gap)| (i, 0.5 * (gap[0].value + gap[1].value)))
     }
 
-    /// The sample of a neighbouring value on the same branch.
-    fn neighbour(&self, sample: &Sample, side: i32) -> Option<&Sample> {
-        let near = self.group(sample.index + side).iter().map(|s| (s.difference(sample), s));
+    /// The sample on the same branch among those of another value.
+    fn on_branch(&self, sample: &Sample, group: Option<&Group>) -> Option<&Sample> {
+        let near = self.all[group?.own.clone()].iter().map(|s| (s.difference(sample), s));
         let near = near.min_by(|a, b| a.0.total_cmp(&b.0));
         near.filter(|(apart, _)| *apart < SAME_BRANCH).map(|(_, other)| other)
     }
@@ -108,14 +119,17 @@ impl Samples {
     /// branches, the closest first.
     pub(super) fn places(&self, preferred: (f64, &[f64; 6]), closest: f64) -> Vec<Place> {
         let mut places = Vec::new();
-        let mut ends: Vec<(i32, Sample, Option<Sample>)> = Vec::new();
-        for sample in &self.all {
-            let sides = [-1, 1].map(|side| self.neighbour(sample, side));
-            for (i, side) in [(0, -1), (1, 1)] {
+        let mut ends: Vec<(usize, Sample, Option<Sample>)> = Vec::new();
+        let of_groups = self.groups.iter().enumerate();
+        for (g, sample) in
+            of_groups.flat_map(|(g, group)| self.all[group.own.clone()].iter().map(move |s| (g, s)))
+        {
+            let around = [g.checked_sub(1).map(|g| &self.groups[g]), self.groups.get(g + 1)];
+            let sides = around.map(|group| self.on_branch(sample, group));
+            for i in 0..2 {
                 if sides[i].is_none() && sample.excluded == 0.0 {
                     // The gap between two values has the number of the larger one.
-                    let gap = sample.index + i32::max(side, 0);
-                    ends.push((gap, *sample, sides[1 - i].copied()));
+                    ends.push((g + i, *sample, sides[1 - i].copied()));
                 }
             }
             if let Some(bound) = lower_bound(sample, sides).filter(|bound| *bound < closest) {

@@ -3,7 +3,7 @@
 //!
 //! Method   one restart from the preferred configuration; then the locked joint of the closed form
 //!          is sampled outwards from its preferred value, until its own displacement exceeds the
-//!          distance of the best solution. Solutions that are closer than their neighbours on the
+//!          distance of the best solution, and more finely where branches end. Solutions that are closer than their neighbours on the
 //!          same branch, and points between ends of branches (`branches.rs`), are the start of a
 //!          descent along the self-motion, in the order of their distance, as long as it can come
 //!          closer than the best: the distance changes by no more than the configuration.
@@ -27,6 +27,9 @@ use crate::spatial::Pose;
 
 /// Solutions outside the limits by less are clamped to them and corrected [rad].
 const NEARLY_WITHIN: f64 = 0.3;
+/// Gaps between values with different numbers of solutions are halved down to this [rad]: branches
+/// end there, and swing by the root of what is left.
+const FINEST: f64 = 0.01;
 /// Largest number of descents.
 const MAX_DESCENTS: usize = 40;
 
@@ -120,22 +123,34 @@ impl Solver {
         let (mut best, mut calls) = (closest * closest, 0);
         // Every sample is a solution.
         let is_accepted = self.avoidance.is_none() && self.problem.half_spaces.is_empty();
-        for k in 0.. {
-            let index = index_of(k);
-            let next = STEP * f64::from((k + 1) / 2);
-            if calls >= most
-                || next * next > best
-                || (own - next <= range[0] - STEP && own + next >= range[1] + STEP)
-            {
-                break;
-            }
-            // The ends of the range are samples as well.
-            let value = own + STEP * f64::from(index);
-            if value <= range[0] - STEP || value >= range[1] + STEP {
-                samples.end_group();
-                continue;
-            }
-            let value = clamp(value, range[0], range[1]);
+        let (mut k, mut gap) = (0, 0);
+        let mut is_outward = true;
+        while calls < most {
+            let value = if is_outward {
+                let index = index_of(k);
+                let next = STEP * f64::from((k + 1) / 2);
+                if next * next > best
+                    || (own - next <= range[0] - STEP && own + next >= range[1] + STEP)
+                {
+                    is_outward = false;
+                    continue;
+                }
+                k += 1;
+                // The ends of the range are samples as well.
+                let value = own + STEP * f64::from(index);
+                if value <= range[0] - STEP || value >= range[1] + STEP {
+                    continue;
+                }
+                clamp(value, range[0], range[1])
+            } else {
+                let Some((place, value)) = samples.fold_between(gap, FINEST) else { break };
+                gap = place;
+                if (value - own) * (value - own) >= best {
+                    gap += 1; // no solution there is closer
+                    continue;
+                }
+                value
+            };
             let apart = value - own;
             calls += 1;
             q[locked] = value;
@@ -143,9 +158,11 @@ impl Solver {
                 let squares =
                     angles.iter().zip(places).map(|(x, c)| (x - self.preferred[c]).powi(2));
                 let far = squares.sum::<f64>() + apart * apart;
-                Sample { index, value, angles, far, excluded }
+                Sample { value, angles, far, excluded }
             };
+            let mut count = 0;
             let found = formulas.analytic.solve_with(target, &q, |angles, most| {
+                count += 1;
                 if most < NEARLY_WITHIN {
                     samples.all.push(sample(angles, most));
                 }
@@ -157,7 +174,7 @@ impl Solver {
                 }
                 samples.all.push(sample);
             }
-            samples.end_group();
+            samples.end_group(value, count + found.len());
         }
         let preferred = places.map(|c| self.preferred[c]);
         if is_accepted {
