@@ -25,8 +25,10 @@ WORDS = {
     "Apache Software License": "Apache-2.0",
     "BSD 3-Clause License": "BSD-3-Clause",
     "BSD License": "BSD-3-Clause",
+    "EPL-2.0, BSD-3-Clause": "EPL-2.0 OR BSD-3-Clause",
     "ISC license": "ISC",
     "MIT License": "MIT",
+    "any-OSI": "MIT",
     "Mozilla Public License 2.0 (MPL 2.0)": "MPL-2.0",
     "Python Software Foundation License": "PSF-2.0",
 }

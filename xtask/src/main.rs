@@ -16,6 +16,7 @@ mod parquet;
 mod python;
 mod python_names;
 mod release;
+mod ros2;
 mod shell;
 mod small_sizes;
 mod steps;
@@ -61,6 +62,10 @@ cargo xtask <task>
   bench     runs the benchmarks of the kernels, and of calls from Python (needs it and PyPI)
   viewer-load [seconds]
             serves the viewer to 20 clients for a minute, and prints memory and lateness
+  ros2 [SECONDS]
+            the ROS 2 node in a loop over DDS on the loopback interface, with a simulated robot and
+            Cyclone DDS on the other side (Linux with unshare, Python and PyPI); with SECONDS a
+            release build for so long, with rate, jitter and latency
   deny      checks licences, duplicates and sources of dependencies with cargo-deny, which it
             installs (needs crates.io), and licences of npm and Python packages (needs PyPI);
             --advisories reads those of RustSec (needs github.com)
@@ -128,6 +133,7 @@ fn run() -> Result<()> {
         Some("parquet") => parquet::check(),
         Some("bench") => steps::bench(),
         Some("viewer-load") => steps::viewer_load(std::env::args().nth(2).as_deref()),
+        Some("ros2") => ros2::task(std::env::args().nth(2).as_deref()),
         Some("deny") => deny::task(std::env::args().nth(2).as_deref()),
         Some("simd") => models::fetch().and_then(|robots| steps::simd(&robots)),
         Some("limits") => {

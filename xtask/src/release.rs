@@ -46,9 +46,10 @@ fn crates() -> Result<Vec<PathBuf>> {
     viewer::build()?;
     let page = Passing(root().join(PAGE));
     copy_folder(&root().join("viewer/dist"), &page.0)?;
-    let packages = ["--package", "cylindroid", "--package", "cylindroid-cli"];
+    let crates = ["cylindroid", "cylindroid-cli", "cylindroid-ros2"];
+    let packages = crates.iter().flat_map(|name| ["--package", name]);
     // The page is in no commit.
     run(cargo(&["package", "--quiet", "--no-verify", "--allow-dirty"]).args(packages))?;
     let file = |name: &str| root().join("target/package").join(format!("{name}-{VERSION}.crate"));
-    Ok(vec![file("cylindroid"), file("cylindroid-cli")])
+    Ok(crates.map(file).to_vec())
 }

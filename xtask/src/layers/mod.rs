@@ -17,11 +17,12 @@ use self::graph::{Circle, circles};
 use self::source::{below, files, text_of};
 
 /// The roots of the crates.
-const CRATES: [&str; 5] = [
+const CRATES: [&str; 6] = [
     "crates/cylindroid/src/lib.rs",
     "crates/cylindroid-c/src/lib.rs",
     "crates/cylindroid-cli/src/lib.rs",
     "crates/cylindroid-py/src/lib.rs",
+    "crates/cylindroid-ros2/src/lib.rs",
     "xtask/src/main.rs",
 ];
 /// The crate whose headers name tests.
