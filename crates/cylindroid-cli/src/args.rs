@@ -46,6 +46,8 @@ Examples:
   cylindroid move panda --to 0.45,0.15,0.35 --rpy 3.1416,0,0.6 --plot move.svg
   cylindroid screws youbot
 
+`cylindroid ros2` is a ROS 2 node, a program of its own: cylindroid-ros2.
+
 Exit codes: 0 success, 1 negative answer (target not reached, loops or grasp not closed, collision), \
 2 error.";
 

@@ -16,6 +16,12 @@ impl Exit {
     /// After Ctrl-C, as of a shell: 128 and the number of the signal.
     pub const INTERRUPTED: Self = Self(130);
 
+    /// That of another program.
+    #[cfg(not(unix))]
+    pub(crate) const fn of(code: u8) -> Self {
+        Self(code)
+    }
+
     /// Success or a negative answer.
     pub(crate) const fn answer(yes: bool) -> Self {
         if yes { Self::SUCCESS } else { Self::NO }

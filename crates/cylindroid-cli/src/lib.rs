@@ -12,6 +12,7 @@ mod fed;
 mod flags;
 mod number_file;
 mod obstacle;
+mod other_programs;
 mod output;
 mod plot;
 mod task_trajectory;
@@ -68,6 +69,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
 }
 
 fn attempt(words: impl IntoIterator<Item = OsString>) -> anyhow::Result<Exit> {
+    let words: Vec<OsString> = words.into_iter().collect();
+    if let Some((program, rest)) = other_programs::named(&words) {
+        return other_programs::run(program, rest);
+    }
     let words = words.into_iter().map(|word| {
         word.into_string().map_err(|word| {
             let hint = "rename the file or leave out these bytes";

@@ -17,6 +17,7 @@ mod map;
 mod measured;
 mod motion;
 mod optimise;
+mod other_programs;
 mod parameters;
 mod pictures;
 mod screws;
