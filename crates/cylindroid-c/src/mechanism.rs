@@ -1,8 +1,10 @@
 //! Mechanisms: loading, names, sizes, limits.
 
 use std::ffi::{CString, c_char};
+use std::path::Path;
 
 use cylindroid::Mechanism;
+use cylindroid::model::formats::{mjcf, sdf, urdf};
 use cylindroid::model::{Coordinate, Limits};
 
 use crate::arguments::{frame, free, give, handle, handle_mut, slice_mut, text};
@@ -52,9 +54,19 @@ pub unsafe extern "C" fn cyl_load_text(
         // SAFETY: as the header requires.
         let (model, path, out) =
             unsafe { (text("model", model)?, text("path", path)?, handle_mut("out", out)?) };
-        give(out, cyl_mechanism::new(cylindroid::load_text(model, path.as_ref())?));
+        give(out, cyl_mechanism::new(parse(model, path.as_ref())?));
         Ok(())
     })
+}
+
+/// By the extension; other files than those of robots are mechanism files.
+fn parse(text: &str, path: &Path) -> cylindroid::Result<Mechanism> {
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("urdf") => urdf::parse(text, path),
+        Some("sdf") => sdf::parse(text, path),
+        Some("xml" | "mjcf") => mjcf::parse(text, path),
+        _ => cylindroid::load_text(text, path),
+    }
 }
 
 /// The mechanism with the drives of these coordinates or loop joints only.

@@ -66,6 +66,27 @@ fn programs_in_c_and_cpp_run() {
     assert!(compilers > 0, "neither gcc nor clang is installed");
 }
 
+/// The controller of ros2_control, compiled with stubs of the headers of ROS 2 and run.
+#[test]
+fn the_controller_of_ros2_control_follows_twists() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let example = here.join("examples/ros2_control");
+    for compiler in ["g++", "clang++"].into_iter().filter(|compiler| is_there(compiler)) {
+        let program = folder.path().join(compiler);
+        let mut command = Command::new(compiler);
+        command.args(["-std=c++17", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]);
+        for include in [here.join("include"), example.join("stubs")] {
+            command.arg("-I").arg(include);
+        }
+        command.args(["servo_controller.cpp", "stubs/manager.cpp"].map(|f| example.join(f)));
+        command.arg(library()).args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
+        output(&mut command);
+        let text = output(&mut Command::new(program));
+        assert!(text.contains("moved by") && text.contains("stopped"), "{text}");
+    }
+}
+
 /// No memory is read or written that belongs to nobody, and none is left; where valgrind is installed.
 #[test]
 fn programs_leave_no_memory() {

@@ -336,7 +336,6 @@ def measure(binary, participant, seconds):
     print(f"{targets} targets reached in {seconds:.0f} s, within {1e3 * worst:.4f} mm")
     median, most, longest = quantiles(gaps)
     print(f"commands: {rate:.2f} Hz; gaps {median:.2f} ms, 99 % {most:.2f}, longest {longest:.2f}")
-    assert abs(rate - RATE) < 0.01 * RATE and worst < 1e-3
 
     latencies, stops = [], []
     for turn in range(40):
@@ -356,6 +355,8 @@ def measure(binary, participant, seconds):
     print(f"one twist moves for {statistics.median(stops) - statistics.median(latencies):.3f} s")
     figures = [s for m in operator.diagnostics.take(N=10) for s in m.status]
     print("last diagnostics:", {pair.key: pair.value for pair in figures[-1].values})
+    assert worst < 1e-3, worst
+    assert abs(rate - RATE) < 0.01 * RATE, f"{rate:.1f} Hz: is the machine busy?"
     end(node)
     robot.is_running = False
     robot.join()
