@@ -1,4 +1,6 @@
 //! Random problems for the solver, and those that a fuzzer makes.
+//!
+//! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
 
 use super::super::active_set::ActiveSet;
 use super::super::inequalities::Inequalities;
