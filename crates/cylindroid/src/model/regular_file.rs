@@ -1,14 +1,45 @@
 //! The one way to read a file: a regular file of bounded size.
 //!
 //! Fails    a folder, device, pipe or socket; a file that is larger than the limit
-//! Why so   a device never ends, a pipe waits for its writer, and memory has an end
-//! Checked  tests/formats/limits.rs, tests/collision/files.rs
+//! Why so   a device never ends, a pipe waits for its writer, and memory has an end. [`files_read`]
+//!          lists files here instead of in every loader, so that a loader that fails half-way has
+//!          its list as well
+//! Checked  tests/formats/limits.rs, tests/formats/load.rs::files_that_are_read_*,
+//!          tests/collision/files.rs
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+
+thread_local! {
+    /// The files read in this thread, while [`files_read`] asks for them.
+    static READ: RefCell<Option<Vec<PathBuf>>> = const { RefCell::new(None) };
+}
+
+/// Does some work, for example loads a model; gives its result and the files that the work read in
+/// this thread, or tried to read, each once: the file itself and all that it includes. Files that
+/// the program `xacro` reads are not among them, and meshes are read where their shape is needed.
+pub fn files_read<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
+    let outer = READ.replace(Some(Vec::new()));
+    let done = work();
+    let read = READ.replace(outer).unwrap_or_default();
+    read.iter().for_each(|path| note(path));
+    (done, read)
+}
+
+/// Adds a file to the list that somebody asks for.
+fn note(path: &Path) {
+    READ.with_borrow_mut(|read| {
+        if let Some(read) = read
+            && !read.iter().any(|known| known == path)
+        {
+            read.push(path.to_owned());
+        }
+    });
+}
 
 /// Reads a regular file of at most `most` bytes; every loader of this library reads by this
 /// function.
@@ -35,6 +66,7 @@ pub fn read_regular_file(path: &Path, most: u64) -> Result<Vec<u8>> {
 /// # Errors
 /// Those of [`read_regular_file`], but for the size.
 pub(crate) fn open_regular_file(path: &Path) -> Result<File> {
+    note(path);
     let io = |e: std::io::Error| refusal(path, e.to_string());
     // Opening a pipe waits for its writer: the kind of the file is known before.
     let metadata = std::fs::metadata(path).map_err(io)?;

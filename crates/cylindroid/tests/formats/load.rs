@@ -1,7 +1,9 @@
 //! Names, paths, extensions.
 
 use std::fs;
+use std::path::PathBuf;
 
+use cylindroid::model::files_read;
 use cylindroid::{Error, load};
 
 use crate::{ARM_TOML, ARM_URDF};
@@ -47,4 +49,36 @@ fn the_format_is_told_by_extension_and_content() {
     assert!(load_as("a.sdf", "<sdf/>").unwrap_err().to_string().contains("SDF"));
     assert!(load_as("a.txt", "hello").unwrap_err().to_string().contains("cannot be told"));
     assert!(load(&folder.path().to_string_lossy()).is_err());
+}
+
+/// Those of includes as well, and of a file that fails up to its fault.
+#[test]
+fn files_that_are_read_are_listed_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| -> PathBuf {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let part = write(
+        "part.xml",
+        "<mujoco><worldbody><body><joint/><geom size='1'/></body></worldbody></mujoco>",
+    );
+    let main =
+        write("main.xml", "<mujoco><include file='part.xml'/><include file='more.xml'/></mujoco>");
+    let loaded = || load(&main.to_string_lossy());
+    let (failed, read) = files_read(loaded);
+    assert!(failed.unwrap_err().to_string().contains("more.xml"));
+    let more = folder.path().join("more.xml");
+    assert_eq!(read, [main.clone(), part.clone(), more.clone()]);
+
+    fs::write(&more, "<mujoco/>").unwrap();
+    let ((loaded, inner), read) = files_read(|| {
+        let inner = files_read(loaded);
+        let _ = files_read(loaded);
+        inner
+    });
+    assert_eq!(loaded.unwrap().n(), 1);
+    assert_eq!((&inner, read), (&vec![main.clone(), part, more], inner.clone()));
+    assert_eq!(files_read(|| load("panda").unwrap().n()), (7, vec![]));
 }
