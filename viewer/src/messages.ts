@@ -130,6 +130,14 @@ export type Method = { name: string, description: string, parameters: Array<Para
 export type MethodMessage = { name: string, parameters: { [key in string]: number }, h: number | null, fallback: string | null };
 /** The joint followed by a mimic joint, in JSON. */
 export type Mimic = { joint: string, multiplier: number, offset: number };
+/** The message `model`. */
+export type ModelNews = {
+  "type": "model",
+  /** How often the model has been loaded again. */
+  reloads: number,
+  /** Why the newest version is not shown. */
+  problem: Refusal | null,
+};
 export type Models = { name: string, catalogue: Array<OfferedModel>, opened: Array<OpenedModel>, opens: boolean };
 export type MoveObstacleMessage = { name: string, position: [number, number, number], quaternion: [number, number, number, number] };
 export type NameMessage = { name: string };
@@ -199,7 +207,7 @@ export type PrincipalScrews = {
   canonical: Pose,
 };
 export type Reciprocal = { order: number, gibson_hunt: string, meaning: string, screws: Array<Screw> };
-/** Why a model is not opened. */
+/** Why a model is not shown. */
 export type Refusal = {
   message: string,
   file: string | null,
@@ -247,7 +255,12 @@ export type Scene = {
   ignored: number,
 };
 export type SceneContact = { name: string, kind: string, a: number, b: number, friction: number | null };
-export type SceneFrame = { name: string, link: number };
+export type SceneFrame = {
+  name: string,
+  link: number,
+  /** In the frame of the link. */
+  pose: Pose,
+};
 export type SceneJoint = {
   name: string,
   kind: JointKind,

@@ -15,6 +15,9 @@ own: configuration, target and actuated joints. Windows with the same `?session=
 the URL share one: the first drives, the others observe or take over. The servo is that of `move` \
 and respects all joint limits. Closed chains are assembled first.
 
+When the file of the model, or one that it includes, changes, the pages show the new version with \
+the joints where they were; a fault in it is shown beside the old one.
+
 The server listens on the loopback interface unless --host is given. Meshes are served only from \
 the folders of the model: the folder of its file, its package, and the packages it refers to.";
 
@@ -71,6 +74,10 @@ pub(crate) struct ViewArgs {
     /// An obstacle in the world, as in `distance`; repeatable. Distances are kept, as with --avoid
     #[arg(long, value_name = "NAME=SHAPE@POSE", allow_hyphen_values = true)]
     pub(crate) obstacle: Vec<ObstacleArg>,
+
+    /// Do not load the model again when its files change
+    #[arg(long)]
+    pub(crate) no_watch: bool,
 
     /// Start, print the URL and exit
     #[arg(long, conflicts_with = "open")]

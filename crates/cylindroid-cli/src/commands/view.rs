@@ -1,7 +1,7 @@
 //! `view`: serves the web viewer.
 
 use std::io::{ErrorKind, Write};
-use std::sync::Arc;
+use std::sync::{Arc, mpsc};
 
 use anyhow::Context;
 use cylindroid::Result;
@@ -13,7 +13,7 @@ use crate::commands::shared::{
     Style, all_actuated, configuration, end_effector, limited, load, within_limits,
 };
 use crate::exit::Exit;
-use crate::viewer::{Server, Start, StartBodies, check_count, page_is_built};
+use crate::viewer::{Server, Start, StartBodies, Watch, check_count, page_is_built};
 
 /// The usual port: an address that can be kept, with what the browser remembers of it.
 const PORT: u16 = 7411;
@@ -27,49 +27,68 @@ struct ViewJson<'a> {
 }
 
 pub(crate) fn run(args: &ViewArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
-    let start = start(args)?;
+    let token = if args.token { random_token()? } else { String::new() };
+    let load = || start(args).map(|start| start.behind(&token));
+    let (start, watch) = Watch::of(load)?;
     let model = start.mechanism.name().to_owned();
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
-    runtime.block_on(async {
-        let server = listening(start, args).await?;
-        let (url, page) = (server.url(), page_is_built());
-        match style {
-            Style::Table => writeln!(out, "{url}")?,
-            Style::Json => {
-                let line = ViewJson { url: &url, model: &model, page };
-                writeln!(out, "{}", serde_json::to_string(&line)?)?;
+    let server = runtime.block_on(listening(start, args, &token))?;
+    announce(&server, args, style, &model, out)?;
+    if !args.check {
+        let shown = server.shown(&args.configuration.model.name);
+        std::thread::scope(|scope| {
+            let (stop, stopped) = mpsc::channel();
+            if !(args.no_watch || watch.is_empty()) {
+                scope.spawn(move || watch.keep(&shown, load, &stopped));
             }
-        }
-        out.flush()?;
-        if !page {
-            note(NOT_BUILT);
-        }
-        if args.open
-            && let Err(error) = opener::open_browser(&url)
-        {
-            note(&format!("no browser opens the page ({error}); open {url} yourself"));
-        }
-        if let Some(url) = server.url_for_others() {
-            note(&format!(
-                "everyone who reaches this machine can open {url}, and the meshes and images in the \
-                 folders of the model; without --host only this machine can"
-            ));
-        }
-        if !args.check {
-            server.serve().await?;
-        }
-        anyhow::Ok(())
-    })?;
+            let served = runtime.block_on(server.serve());
+            drop(stop);
+            served
+        })?;
+    }
     // Unfinished reports are discarded.
     runtime.shutdown_background();
     Ok(Exit::SUCCESS)
 }
 
+/// Prints the URL, and what is to be known about it.
+fn announce(
+    server: &Server,
+    args: &ViewArgs,
+    style: Style,
+    model: &str,
+    out: &mut dyn Write,
+) -> anyhow::Result<()> {
+    let (url, page) = (server.url(), page_is_built());
+    match style {
+        Style::Table => writeln!(out, "{url}")?,
+        Style::Json => {
+            let line = ViewJson { url: &url, model, page };
+            writeln!(out, "{}", serde_json::to_string(&line)?)?;
+        }
+    }
+    out.flush()?;
+    if !page {
+        note(NOT_BUILT);
+    }
+    if args.open
+        && let Err(error) = opener::open_browser(&url)
+    {
+        note(&format!("no browser opens the page ({error}); open {url} yourself"));
+    }
+    if let Some(url) = server.url_for_others() {
+        note(&format!(
+            "everyone who reaches this machine can open {url}, and the meshes and images in the \
+             folders of the model; without --host only this machine can"
+        ));
+    }
+    Ok(())
+}
+
 /// At the port of `--port`; without it at the usual one, or at a free one where that is taken.
-async fn listening(start: Start, args: &ViewArgs) -> anyhow::Result<Server> {
-    let token = if args.token { random_token()? } else { String::new() };
+async fn listening(start: Start, args: &ViewArgs, token: &str) -> anyhow::Result<Server> {
     let start = Arc::new(start);
-    let bind = |port| Server::bind(Arc::clone(&start), &args.host, port, &token);
+    let bind = |port| Server::bind(Arc::clone(&start), &args.host, port, token);
     let port = args.port.unwrap_or(PORT);
     let server = match bind(port).await {
         Err(error) if error.kind() == ErrorKind::AddrInUse && args.port.is_none() => bind(0).await,

@@ -5,7 +5,9 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
+use std::fs;
 use std::path::{Component, Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use cylindroid::Mechanism;
 use cylindroid::model::Geometry;
@@ -33,6 +35,9 @@ pub(super) struct Folders {
     open: Vec<PathBuf>,
     /// The folder of all URLs: empty, or a slash and the token.
     root: String,
+    /// URLs of meshes that are newer than this contain the time of their change, so that a page
+    /// that has the old mesh asks for the new one.
+    since: Option<SystemTime>,
 }
 
 /// A mesh as the page gets it.
@@ -74,12 +79,22 @@ impl Folders {
         }
         // The root of the file system is never served.
         open.retain(|folder| folder.parent().is_some());
-        Ok(Self { open: open.into_iter().collect(), root: String::new() })
+        Ok(Self { open: open.into_iter().collect(), ..Self::default() })
     }
 
     /// The same, with URLs below `/<token>`.
     pub(super) fn behind(self, token: &str) -> Self {
         Self { root: format!("/{token}"), ..self }
+    }
+
+    /// The same, with URLs below a folder of those of a server.
+    pub(super) fn below(self, of_server: &Self, folder: &str) -> Self {
+        Self { root: format!("{}/{folder}", of_server.root), ..self }
+    }
+
+    /// The same, for pages that may have meshes of before this time.
+    pub(super) fn since(self, time: SystemTime) -> Self {
+        Self { since: Some(time), ..self }
     }
 
     /// URL and format of a mesh, or the reason why it is not served.
@@ -99,8 +114,8 @@ impl Folders {
             self.open.iter().enumerate().find_map(|(i, folder)| {
                 let inside = file.strip_prefix(folder).ok()?.to_str()?;
                 let inside = inside.replace(std::path::MAIN_SEPARATOR, "/");
-                let root = &self.root;
-                Some(format!("{root}/mesh/{i}/{}", utf8_percent_encode(&inside, PATH)))
+                let (root, version) = (&self.root, self.version(&file));
+                Some(format!("{root}/mesh/{i}/{}{version}", utf8_percent_encode(&inside, PATH)))
             })
         });
         match found {
@@ -110,6 +125,14 @@ impl Folders {
                  --meshes."
             )),
         }
+    }
+
+    /// The query of a mesh that has changed; empty for others.
+    fn version(&self, file: &Path) -> String {
+        let changed = fs::metadata(file).and_then(|data| data.modified()).ok();
+        let changed = changed.filter(|time| self.since.is_some_and(|since| *time > since));
+        let time = changed.and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+        time.map_or_else(String::new, |time| format!("?changed={}", time.as_millis()))
     }
 
     /// The file at `/mesh/<folder>/<path>`, if it may be served. `path` is decoded.
@@ -149,6 +172,16 @@ fn meshes(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Option<&Path>)> 
     })
 }
 
+/// The files of all meshes that were found, those of collision shapes as well.
+pub(super) fn mesh_files(mechanism: &Mechanism) -> impl Iterator<Item = &Path> {
+    let collisions = mechanism.links().iter().flat_map(|l| &l.collisions);
+    let collisions = collisions.filter_map(|c| match &c.geometry {
+        Geometry::Mesh { path, .. } => path.as_deref(),
+        _ => None,
+    });
+    meshes(mechanism).filter_map(|(_, path)| path).chain(collisions)
+}
+
 /// The folder of the package that `package://NAME/rest` was found in.
 fn package(uri: &str, path: &Path) -> Option<PathBuf> {
     let uri = uri.trim();
@@ -164,8 +197,6 @@ fn package(uri: &str, path: &Path) -> Option<PathBuf> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     #[test]
@@ -185,7 +216,7 @@ mod tests {
             fs::write(all.path().join(name), name).unwrap();
         }
         let folder = folder.canonicalize().unwrap();
-        let open = Folders { open: vec![folder.clone()], root: String::new() };
+        let open = Folders { open: vec![folder.clone()], ..Folders::default() };
         assert!(open.file(0, "meshes/a b.stl").is_some() && open.file(0, "meshes/t.PNG").is_some());
         for path in [
             "../out.stl",
@@ -221,6 +252,11 @@ mod tests {
         assert!(open.served("b", Some(&all.path().join("out.stl"))).problem.is_some());
         assert!(open.served("c", None).url.is_none());
         assert!(open.served("d", Some(&folder.join("key.pem"))).url.is_none());
+        let later = open.since(UNIX_EPOCH);
+        let url = later.served("a", Some(&folder.join("meshes/a b.stl"))).url.unwrap();
+        assert!(url.starts_with("/mesh/0/meshes/a%20b.stl?changed="), "{url}");
+        let now = later.since(SystemTime::now() + std::time::Duration::from_secs(60));
+        assert!(!now.served("a", Some(&folder.join("meshes/a b.stl"))).url.unwrap().contains('?'));
     }
 
     #[test]

@@ -46,6 +46,13 @@ impl Chosen {
             fallback: None,
         }
     }
+
+    /// The message that chooses it.
+    pub(super) fn choice(&self) -> MethodChoice {
+        let Self { name, parameters, h, fallback } = self.clone();
+        let parameters = parameters.into_iter().map(|(name, x)| (name.to_owned(), x)).collect();
+        MethodChoice { name, parameters, h, fallback }
+    }
 }
 
 /// The chosen inverse, and the servo options for it; `best_pitch` is called if a pitch is required

@@ -16,6 +16,7 @@ pub(super) struct Mailbox {
 #[derive(Debug, Default)]
 struct Waiting {
     about: Option<Utf8Bytes>,
+    model: Option<Utf8Bytes>,
     scene: Option<Utf8Bytes>,
     drawings: Option<Utf8Bytes>,
     state: Option<Numbered>,
@@ -36,6 +37,12 @@ impl Mailbox {
     /// The message `session`.
     pub(super) fn put_about(&self, text: Utf8Bytes) {
         self.waiting().about = Some(text);
+        self.arrived.notify_one();
+    }
+
+    /// The message `model`.
+    pub(super) fn put_model(&self, text: Utf8Bytes) {
+        self.waiting().model = Some(text);
         self.arrived.notify_one();
     }
 
@@ -61,7 +68,8 @@ impl Mailbox {
     /// The next message that comes before answers.
     pub(super) fn first(&self) -> Option<Utf8Bytes> {
         let mut waiting = self.waiting();
-        waiting.about.take().or_else(|| waiting.scene.take())
+        let Waiting { about, model, scene, .. } = &mut *waiting;
+        about.take().or_else(|| model.take()).or_else(|| scene.take())
     }
 
     /// The next message that comes after answers, but states.

@@ -7,7 +7,7 @@
 //! one client wants to see of it; `measures`, `overlays`, `posture`, `elsewhere`, `compare`, `reports`,
 //! `snapshot` and `scene` describe a session; `dispatcher` executes messages; `shared_session` moves a session in
 //! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it, `opened` those of further
-//! models;
+//! models, `refusal` says why one is not shown; `watch` loads a model again whose files change;
 //! `socket` talks to one client; `safety` protects `server`, which listens; `embedded` is all of it
 //! inside another program, with its `drawings` and `drags`; `fed` is a client of tests. `typescript`
 //! writes the messages as types of the page. All mathematics is in the library.
@@ -35,6 +35,7 @@ mod opened;
 mod overlays;
 mod posture;
 mod reaching;
+mod refusal;
 mod reports;
 mod safety;
 mod scene;
@@ -47,6 +48,7 @@ mod socket;
 mod start;
 #[cfg(test)]
 mod typescript;
+mod watch;
 
 pub(crate) use self::assets::page_is_built;
 pub(crate) use self::bodies::check_count;
@@ -57,3 +59,4 @@ pub use self::embedded::{ShowOptions, Viewer};
 pub(crate) use self::fed::feed;
 pub(crate) use self::server::Server;
 pub(crate) use self::start::{Start, StartBodies};
+pub(crate) use self::watch::Watch;

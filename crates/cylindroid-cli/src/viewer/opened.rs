@@ -6,11 +6,11 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use cylindroid::model::read_regular_file;
 use cylindroid::{Error, Mechanism, catalogue};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
+use super::refusal::Refusal;
 use super::sessions::Sessions;
 use super::start::{Start, StartBodies};
 
@@ -22,8 +22,6 @@ const MOST_FILES: usize = 2000;
 const MOST_MODELS: usize = 16;
 /// Extensions of model files. A xacro file would be a program.
 const MODELS: [&str; 5] = ["urdf", "xml", "mjcf", "sdf", "toml"];
-/// Longest line of a file that is shown, in characters.
-const LONGEST_LINE: usize = 200;
 
 /// The models that are open.
 #[derive(Debug, Default)]
@@ -74,56 +72,6 @@ struct Head {
 
 /// Paths and contents.
 type Files<'a> = Vec<(PathBuf, &'a [u8])>;
-
-/// Why a model is not opened.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(ts_rs::TS))]
-pub(super) struct Refusal {
-    message: String,
-    file: Option<String>,
-    /// From 1.
-    line: Option<usize>,
-    /// In characters, from 1.
-    column: Option<usize>,
-    /// The line itself.
-    text: Option<String>,
-    help: String,
-}
-
-impl Refusal {
-    pub(super) fn new(message: impl Into<String>, help: &str) -> Box<Self> {
-        let (message, help) = (message.into(), help.to_owned());
-        Box::new(Self { message, file: None, line: None, column: None, text: None, help })
-    }
-
-    /// An error of the library; paths are those inside `folder`.
-    fn of(error: &Error, folder: Option<&Path>) -> Box<Self> {
-        let inside = |text: &str| match folder {
-            Some(folder) => text.replace(&format!("{}/", folder.display()), ""),
-            None => text.to_owned(),
-        };
-        let Error::File(place) = error else {
-            return Self::new(inside(&error.to_string()), "");
-        };
-        // Files of the server that a model includes are not shown.
-        let is_sent = folder.is_some_and(|folder| {
-            place.path.canonicalize().is_ok_and(|path| path.starts_with(folder))
-        });
-        let bytes =
-            if is_sent { read_regular_file(&place.path, LARGEST as u64) } else { Ok(vec![]) };
-        let bytes = bytes.unwrap_or_default();
-        let text = String::from_utf8_lossy(&bytes);
-        let line = text.lines().nth(place.line.saturating_sub(1)).unwrap_or_default();
-        Box::new(Self {
-            message: inside(&place.message),
-            file: Some(inside(&place.path.display().to_string())),
-            line: Some(place.line),
-            column: Some(place.column),
-            text: Some(line.trim().chars().take(LONGEST_LINE).collect()),
-            help: inside(&place.help),
-        })
-    }
-}
 
 impl Opened {
     /// Those that are open, in the order of their opening.
@@ -189,7 +137,7 @@ impl Opened {
         }
         models.count += 1;
         let (id, name) = (models.count.to_string(), start.mechanism.name().to_owned());
-        start.folders = start.folders.behind(&format!("models/{id}"));
+        start.folders = start.folders.below(&beside.start().folders, &format!("models/{id}"));
         let known = Known { id: id.clone(), name };
         models.open.push(Model { id, sessions: beside.beside(start), _folder: folder });
         Ok(known)

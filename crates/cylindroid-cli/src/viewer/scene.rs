@@ -175,6 +175,8 @@ struct CoordinateJson<'a> {
 struct FrameJson<'a> {
     name: &'a str,
     link: usize,
+    /// In the frame of the link.
+    pose: PoseJson,
 }
 
 #[derive(Debug, Serialize)]
@@ -306,7 +308,7 @@ impl<'a> Scene<'a> {
             frames: mechanism
                 .frames()
                 .iter()
-                .map(|f| FrameJson { name: &f.name, link: f.link })
+                .map(|f| FrameJson { name: &f.name, link: f.link, pose: f.link_from_frame.into() })
                 .collect(),
             frame: session.frame(),
             task: TaskJson {

@@ -19,12 +19,14 @@ use tokio::net::{TcpListener, TcpStream};
 use super::assets::{Folders, Page, page_is_built};
 use super::json::text;
 use super::messages::Complaint;
-use super::opened::{self, Known, Offer, Opened, Refusal};
+use super::opened::{self, Known, Offer, Opened};
+use super::refusal::Refusal;
 use super::safety::{Guard, Names, guard};
 use super::sessions::{Asked, Sessions};
 use super::shared_session::SharedSession;
 use super::socket::{Silence, talk};
 use super::start::Start;
+use super::watch::Shown;
 
 /// Maximum frame size [bytes]. Longer messages than allowed are answered with an error up to this
 /// size; beyond it the connection ends.
@@ -115,6 +117,11 @@ impl Server {
         self.names.url_for_others().map(|url| self.with_token(url))
     }
 
+    /// What a watch over the file of the model keeps up to date.
+    pub(crate) fn shown(&self, model: &str) -> Shown {
+        Shown::new(self.shared.sessions.clone(), model)
+    }
+
     /// Serves until ctrl-c.
     pub(crate) async fn serve(self) -> io::Result<()> {
         tokio::select! {
@@ -190,7 +197,8 @@ pub(super) struct ModelsJson<'a> {
 async fn models(State(shared): State<Shared>) -> Response {
     let list = move || {
         let (opened, opens) = (shared.opened.known(), shared.opens);
-        let name = shared.sessions.start().mechanism.name();
+        let start = shared.sessions.start();
+        let name = start.mechanism.name();
         text(&ModelsJson { name, catalogue: opened::offers(), opened, opens })
     };
     match tokio::task::spawn_blocking(list).await {

@@ -5,6 +5,7 @@
 mod collisions;
 mod elsewhere;
 mod followed;
+mod reloaded;
 mod twist_command;
 mod velocity_mode;
 

@@ -1,11 +1,12 @@
-//! The sessions of a server by their names, and the places of its clients.
+//! The sessions of a model by their names, and the places of its clients.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
+use axum::extract::ws::Utf8Bytes;
 use cylindroid::Result;
 
+use super::session::Session;
 use super::shared_session::SharedSession;
 use super::start::Start;
 
@@ -14,14 +15,21 @@ const MOST_CLIENTS: usize = 100;
 /// Longest name of a session.
 const LONGEST_NAME: usize = 60;
 
-/// The sessions of a server.
+/// The sessions of a model.
 #[derive(Debug, Clone)]
 pub(super) struct Sessions {
-    start: Arc<Start>,
-    named: Arc<Mutex<BTreeMap<String, Weak<SharedSession>>>>,
+    known: Arc<Mutex<Known>>,
     /// The one of a program, which all clients join that name no other.
     of_program: Option<Arc<SharedSession>>,
     clients: Arc<AtomicUsize>,
+}
+
+#[derive(Debug)]
+struct Known {
+    start: Arc<Start>,
+    /// The message `model`, once the model has been loaded again.
+    model: Option<Utf8Bytes>,
+    live: Vec<Weak<SharedSession>>,
 }
 
 /// The place of a client, released when dropped.
@@ -70,17 +78,38 @@ impl Drop for Place {
 
 impl Sessions {
     pub(super) fn new(start: Arc<Start>, of_program: Option<Arc<SharedSession>>) -> Self {
-        Self { start, named: Arc::default(), of_program, clients: Arc::default() }
+        Self { known: Known::of(start), of_program, clients: Arc::default() }
     }
 
     /// Those of another model, beside these: all clients together have their places.
     pub(super) fn beside(&self, start: Start) -> Self {
         let clients = Arc::clone(&self.clients);
-        Self { start: Arc::new(start), named: Arc::default(), of_program: None, clients }
+        Self { known: Known::of(Arc::new(start)), of_program: None, clients }
     }
 
-    pub(super) fn start(&self) -> &Start {
-        &self.start
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn start(&self) -> Arc<Start> {
+        Arc::clone(&self.known().start)
+    }
+
+    /// All sessions go on with a new version of the model, if there is one, and all clients get the
+    /// message `model`.
+    pub(super) fn reload(&self, start: Option<Start>, told: Utf8Bytes) -> Result<()> {
+        let mut known = self.known();
+        if let Some(start) = start {
+            let start = Arc::new(start);
+            // A session of it can be begun.
+            Session::new(Arc::clone(&start))?;
+            known.start = start;
+        }
+        for session in known.live() {
+            session.reload(&known.start, told.clone());
+        }
+        known.model = Some(told);
+        Ok(())
     }
 
     /// True if a program holds a session.
@@ -90,7 +119,7 @@ impl Sessions {
 
     /// True if there is a session, or will be one at once.
     pub(super) fn are_in_use(&self) -> bool {
-        Arc::strong_count(&self.start) > 1
+        Arc::strong_count(&self.known) > 1 || self.known().live().next().is_some()
     }
 
     /// A place for one more client, unless there are too many.
@@ -103,18 +132,31 @@ impl Sessions {
     /// The session of this name, begun if nobody holds it; without a name that of the program, or
     /// one of the client's own.
     pub(super) fn find(&self, name: Option<String>) -> Result<Arc<SharedSession>> {
-        let begin = |name| SharedSession::begin(Arc::clone(&self.start), name, None);
-        let Some(name) = name else {
-            return self.of_program.clone().map_or_else(|| begin(None), Ok);
+        let mut known = self.known();
+        let found = match &name {
+            None => self.of_program.clone(),
+            Some(_) => known.live().find(|session| session.name() == name.as_deref()),
         };
-        let mut named = self.named.lock().unwrap_or_else(PoisonError::into_inner);
-        named.retain(|_, session| session.strong_count() > 0);
-        if let Some(session) = named.get(&name).and_then(Weak::upgrade) {
+        if let Some(session) = found {
             return Ok(session);
         }
-        let session = begin(Some(name.clone()))?;
-        named.insert(name, Arc::downgrade(&session));
+        let session = SharedSession::begin(Arc::clone(&known.start), name, None)?;
+        if let Some(told) = &known.model {
+            session.tell_model(told.clone());
+        }
+        known.live.retain(|session| session.strong_count() > 0);
+        known.live.push(Arc::downgrade(&session));
         Ok(session)
+    }
+}
+
+impl Known {
+    fn of(start: Arc<Start>) -> Arc<Mutex<Self>> {
+        Arc::new(Mutex::new(Self { start, model: None, live: Vec::new() }))
+    }
+
+    fn live(&self) -> impl Iterator<Item = Arc<SharedSession>> {
+        self.live.iter().filter_map(Weak::upgrade)
     }
 }
 

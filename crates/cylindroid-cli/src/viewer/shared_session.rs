@@ -48,6 +48,8 @@ pub(super) struct SharedSession {
 pub(super) struct Inner {
     pub(super) session: Session,
     pub(super) program: Option<Program>,
+    /// The message `model`, once the model has been loaded again.
+    model: Option<Utf8Bytes>,
     clients: BTreeMap<u64, Client>,
     next: u64,
     driver: Option<u64>,
@@ -115,6 +117,7 @@ impl SharedSession {
         let inner = Inner {
             session: Session::new(start)?,
             program,
+            model: None,
             clients: BTreeMap::new(),
             next: 0,
             driver: None,
@@ -148,6 +151,9 @@ impl SharedSession {
         if inner.driver.is_none() && !observes {
             inner.driver = Some(id);
         }
+        if let Some(told) = &inner.model {
+            mailbox.put_model(told.clone());
+        }
         mailbox.put_scene(text(&Scene::of(&inner.session)).into());
         if let Some(program) = &inner.program {
             mailbox.put_drawings(program.drawings.text().into());
@@ -158,6 +164,33 @@ impl SharedSession {
         drop(inner);
         self.changed.notify_one();
         Membership { shared: Arc::clone(self), id }
+    }
+
+    pub(super) fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Gives all clients, and those to come, the message `model`.
+    pub(super) fn tell_model(&self, told: Utf8Bytes) {
+        let mut inner = self.lock();
+        inner.clients.values().for_each(|client| client.mailbox.put_model(told.clone()));
+        inner.model = Some(told);
+    }
+
+    /// Goes on with this version of the model, if it is another one.
+    pub(super) fn reload(&self, start: &Arc<Start>, told: Utf8Bytes) {
+        self.tell_model(told);
+        let mut inner = self.lock();
+        if inner.session.is_of(start) {
+            return;
+        }
+        // A session of this start can be begun.
+        let Ok(session) = inner.session.reloaded(start) else { return };
+        inner.session = session;
+        inner.show_scene();
+        inner.is_dirty = true;
+        drop(inner);
+        self.changed.notify_one();
     }
 
     /// The number of clients.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
+use std::time::SystemTime;
 
 use cylindroid::collision::{CollisionModel, CollisionOptions};
 use cylindroid::{EndEffector, Mechanism, Result};
@@ -51,6 +52,19 @@ impl Start {
             start.collision_model()?;
         }
         Ok(start)
+    }
+
+    /// The same, with URLs of meshes below a token, if there is one.
+    pub(crate) fn behind(self, token: &str) -> Self {
+        if token.is_empty() {
+            return self;
+        }
+        Self { folders: self.folders.behind(token), ..self }
+    }
+
+    /// The same, for pages that may have meshes of before this time.
+    pub(super) fn since(self, time: SystemTime) -> Self {
+        Self { folders: self.folders.since(time), ..self }
     }
 
     /// The bodies of the links and the obstacles.

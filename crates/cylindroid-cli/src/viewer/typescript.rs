@@ -12,14 +12,15 @@ use super::drawings::DrawingsJson;
 use super::elsewhere::StatesJson;
 use super::messages::{Complaint, Request};
 use super::names::{Overlay, REPORTS};
-use super::opened::Refusal;
 use super::overlays::Shown;
 use super::posture::PostureJson;
+use super::refusal::Refusal;
 use super::reports::ReportJson;
 use super::scene::{Scene, ShapeJson};
 use super::server::ModelsJson;
 use super::shared_session::AboutJson;
 use super::snapshot::StateJson;
+use super::watch::ModelJson;
 
 const HEAD: &str = "\
 /* Made of the structs of the server by a test of crates/cylindroid-cli: see CONTRIBUTING.md. */
@@ -161,6 +162,7 @@ fn messages() -> String {
     types.add::<Complaint>("Failure");
     types.add::<AboutJson<'static>>("About");
     types.add::<DrawingsJson<'static>>("Drawings");
+    types.add::<ModelJson>("ModelNews");
     types.add::<ModelsJson<'static>>("Models");
     types.add::<Refusal>("Refusal");
     types.add::<Request>("ToServer");

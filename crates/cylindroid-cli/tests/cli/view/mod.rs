@@ -9,6 +9,7 @@ mod motion;
 mod obstacles;
 mod opened;
 mod refused;
+mod reload;
 mod served;
 mod shared;
 
@@ -91,7 +92,9 @@ impl Server {
     fn client_of(&self, query: &str) -> Client {
         let stream = TcpStream::connect(self.address()).unwrap();
         stream.set_read_timeout(Some(WAIT)).unwrap();
-        let request = format!("ws://{}/ws{query}", self.address()).into_client_request().unwrap();
+        let token = if self.token.is_empty() { String::new() } else { format!("/{}", self.token) };
+        let url = format!("ws://{}{token}/ws{query}", self.address());
+        let request = url.into_client_request().unwrap();
         let (socket, _) = client(request, stream).unwrap();
         Client { socket }
     }
