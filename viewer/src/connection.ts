@@ -28,6 +28,14 @@ export class Connection {
     return true;
   }
 
+  /** Ends it for good. */
+  close(): void {
+    const { socket } = this;
+    this.socket = null;
+    clearTimeout(this.timer);
+    socket?.close();
+  }
+
   /** Tries now instead of after the pause. */
   retry(): void {
     if (this.link !== "lost") return;
@@ -57,6 +65,15 @@ export class Connection {
     this.link = link;
     this.handlers.link(link, wait);
   }
+}
+
+/** The address of the sessions of an opened model, or of that of the command. */
+export function socketTo(model: string | null): string {
+  const url = new URL("./ws", location.href);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  [url.search, url.hash] = ["", ""];
+  if (model !== null) url.searchParams.set("model", model);
+  return url.href;
 }
 
 /** The address of the server that gave this page. */

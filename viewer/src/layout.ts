@@ -2,8 +2,8 @@
 import { h } from "./dom";
 
 export type Layout = {
-  bar: HTMLElement; left: HTMLElement; right: HTMLElement; plots: HTMLElement; stage: HTMLElement;
-  tools: HTMLElement; legend: HTMLElement; dock: HTMLElement; banner: HTMLElement;
+  bar: HTMLElement; left: HTMLElement; right: HTMLElement; plots: HTMLElement; stage: HTMLElement; view: HTMLElement;
+  tools: HTMLElement; legend: HTMLElement; dock: HTMLElement; banner: HTMLElement; notice: HTMLElement;
   /** One of a `key` takes the place of the last. */
   toast: (words: string, bad?: boolean, key?: string) => void;
 };
@@ -20,10 +20,11 @@ export function layout(root: HTMLElement): Layout {
   const tools = h("div", { class: "float top", role: "toolbar", "aria-label": "View" });
   const legend = h("div", { class: "legend", role: "region", "aria-label": "Legend", tabindex: 0 });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
+  const notice = h("div", { class: "banner", role: "alert", hidden: true });
   const toasts = h("div", { class: "toasts", role: "status", "aria-live": "polite" });
   // The legend lies below the view, not over the robot.
-  const picture = h("div", { class: "picture" });
-  const view = h("div", { class: "view" }, picture, tools, banner, toasts);
+  const picture = h("div", { class: "picture" }, notice, banner);
+  const view = h("div", { class: "view" }, picture, tools, toasts);
   const stage = h("main", { class: "stage", "aria-label": "Robot" }, view, dock, legend);
   root.append(h("div", { class: "shell" }, bar, left, stage, plots, right));
   const toast = (words: string, bad = false, key = words): void => {
@@ -37,5 +38,5 @@ export function layout(root: HTMLElement): Layout {
     while (toasts.children.length > MOST_TOASTS) toasts.firstElementChild?.remove();
     setTimeout(() => made.remove(), TOAST_TIME);
   };
-  return { bar, left, right, plots, stage: picture, tools, legend, dock, banner, toast };
+  return { bar, left, right, plots, stage: picture, view, tools, legend, dock, banner, notice, toast };
 }

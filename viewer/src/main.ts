@@ -1,5 +1,6 @@
 /** Assembles the page. The server computes; the page sends messages and draws. */
 import { Sphere, Vector3 } from "three";
+import { Companions } from "./beside/companions";
 import { Bar } from "./controls/bar";
 import { Joints } from "./controls/joints";
 import { Obstacles as ObstaclePanel } from "./controls/obstacles";
@@ -20,6 +21,7 @@ import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
 import { Overlays } from "./overlays/overlays";
 import { Obstacles } from "./obstacles";
+import { News } from "./models/model_news";
 import { OpenDialog } from "./models/open_dialog";
 import { capabilityPanel } from "./panels/capability";
 import { Compare } from "./panels/compare";
@@ -34,11 +36,16 @@ import { Restore } from "./restore";
 import { Collisions } from "./robot/collisions";
 import { Robot } from "./robot/robot";
 import { Labels } from "./scene/labels";
+import { Picking } from "./scene/picking";
 import { Stage } from "./scene/stage";
 import { Session } from "./session";
 import { fragment } from "./share";
 import { Target } from "./target";
 import { Timeline, type Moment } from "./timeline/timeline";
+import { keyOf } from "./tree/items";
+import { Mark } from "./tree/mark";
+import { ModelPanel } from "./tree/model_panel";
+import { Selection } from "./tree/selection";
 import { inUnits } from "./units";
 
 const root = document.getElementById("app");
@@ -60,7 +67,10 @@ function start(): void {
   });
   let problemsTold = "";
   const robot = new Robot({
-    changed: () => stage.invalidate(),
+    changed: () => {
+      mark.show(selection.marked, session.scene);
+      stage.invalidate();
+    },
     problems: (sentences) => {
       const told = sentences.join();
       if (sentences.length > 0 && told !== problemsTold) {
@@ -72,6 +82,14 @@ function start(): void {
     },
   });
   const labels = new Labels(page.stage);
+  const selection = new Selection();
+  const mark = new Mark(robot, labels);
+  const modelPanel = new ModelPanel(session, selection);
+  page.view.append(modelPanel.card);
+  selection.onChange(() => {
+    mark.show(selection.marked, session.scene);
+    stage.invalidate();
+  });
   const overlays = new Overlays(page.legend, labels, (names) => session.send({ type: "overlays", names }));
   const compare = new Compare(session, (point) => {
     target.showPoint(point);
@@ -91,10 +109,19 @@ function start(): void {
     obstaclePanel.show(target.obstacle);
     tools.held();
   };
-  const obstacles = new Obstacles(stage, { picked: hold, problem: (sentence) => page.toast(sentence, true) }, () => target.isHovered());
+  const picking = new Picking(stage, () => target.isHovered());
+  const obstacles = new Obstacles(stage, { picked: hold, problem: (sentence) => page.toast(sentence, true) }, picking);
+  picking.add(robot.group, (body) => {
+    const owner = robot.ownerOf(body);
+    const list = { link: session.scene?.links, joint: session.scene?.joints, loop: session.scene?.loops };
+    const name = owner && list[owner.kind]?.[owner.index]?.name;
+    if (owner && name !== undefined && name !== null) selection.select(keyOf(owner.kind, name), true);
+  });
+  picking.onNothing(() => selection.select(null));
   const obstaclePanel = new ObstaclePanel(session, hold);
   let fitWanted = true;
-  const fit = (): void => stage.fit(target.within(robot.box()));
+  const companions = new Companions({ changed: () => stage.invalidate(), say: page.toast, box: () => robot.box() });
+  const fit = (): void => stage.fit(companions.within(target.within(robot.box())));
   const tools = new Tools(page.tools, target, stage, fit, () => obstaclePanel.show(null));
   const joints = new Joints(session);
   const servo = new ServoControls(session);
@@ -120,14 +147,14 @@ function start(): void {
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];
   reports.watch("mobility", mobility);
   reports.watch("manipulability", capability);
-  page.left.append(joints.panel.element, switches.panel.element, map.panel.element, obstaclePanel.panel.element, servo.panel.element, new UnitControls().panel.element);
+  page.left.append(joints.panel.element, switches.panel.element, map.panel.element, modelPanel.panel.element, obstaclePanel.panel.element, servo.panel.element, new UnitControls().panel.element, companions.panel.element);
   page.right.append(...[pose, singular, distances.panel, screws, mobility.panel, capability.panel, compare.panel].map((panel) => panel.element));
   inUnits(page.right, redraw);
   // A folded panel is not kept up to date.
   for (const { onToggle } of [joints.panel, servo.panel, obstaclePanel.panel, pose, singular]) onToggle(redraw);
   const drawings = new Drawings(labels);
   session.on("drawings", (message) => drawings.show(message));
-  stage.scene.add(robot.group, collisions.group, overlays.group, obstacles.group, distances.group, drawings.group, map.cloud.group);
+  stage.scene.add(robot.group, companions.group, mark.group, collisions.group, overlays.group, obstacles.group, distances.group, drawings.group, map.cloud.group);
 
   const wantScrews = (open: boolean): void => overlays.want("principal-screws", open);
   screws.onToggle(wantScrews);
@@ -152,7 +179,7 @@ function start(): void {
   new Role(bar.status, session);
   page.plots.append(timeline.plots.panel.element);
   stage.scene.add(timeline.trail.group);
-  const dialog = new OpenDialog((file) => void map.open(file).then((is) => (is ? undefined : timeline.open(file))));
+  const dialog = new OpenDialog((file) => void map.open(file).then((is) => (is ? undefined : timeline.open(file))), (id) => companions.add(id));
   onDrop((files) => void dialog.take(files));
   distances.panel.onToggle(() => timeline.refresh());
   const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
@@ -181,12 +208,19 @@ function start(): void {
   const known = { name: "", bodies: "" };
   session.on("scene", (scene) => {
     const bodies = JSON.stringify([scene.links, scene.joints, scene.loops, scene.contacts]);
-    if (scene.name !== known.name) fitWanted = true;
+    if (isReloaded) [untouched, scaleWanted] = [false, true];
+    else if (scene.name !== known.name) fitWanted = true;
+    if (isReloaded) history.clear();
+    isReloaded = false;
     if (scene.name !== known.name || bodies !== known.bodies) {
       robot.build(scene);
       collisions.build(scene);
+      // Until the first state comes.
+      if (session.state) robot.place(session.state);
     }
     Object.assign(known, { name: scene.name, bodies });
+    modelPanel.build(scene, selection.build(scene));
+    mark.show(selection.marked, scene);
     target.build(scene);
     bar.build(scene);
     joints.build(scene);
@@ -202,6 +236,11 @@ function start(): void {
     stage.invalidate();
   });
 
+  /** The next scene is another version of the model: who looks at it keeps the view. */
+  let isReloaded = false;
+  let scaleWanted = false;
+  new News(page.notice, session, { reloaded: () => (isReloaded = true), say: page.toast });
+
   /** Nobody has turned the view yet. */
   let untouched = true;
   const touch = (): void => {
@@ -211,13 +250,20 @@ function start(): void {
   page.tools.addEventListener("click", touch);
   /** Overlays have a size that suits the robot. */
   let size = 1;
-  const fitAll = (scene: Scene): void => {
-    fitWanted = false;
+  const scaleAll = (scene: Scene): void => {
+    scaleWanted = false;
     const box = robot.box();
     size = Math.max(2.2 * box.getBoundingSphere(new Sphere()).radius, 0.1 * scene.reach);
     target.scale(size);
     drawings.scale(size);
+    mark.scale(size);
     stage.scale(size, scene.dimension === 2 ? -0.03 * size : box.min.z);
+    stage.setPlanar(scene.dimension === 2);
+    stage.frame(companions.within(target.within(box)));
+  };
+  const fitAll = (scene: Scene): void => {
+    fitWanted = false;
+    scaleAll(scene);
     fit();
     // Planar mechanisms are seen in their plane.
     stage.setOrthographic(scene.dimension === 2);
@@ -229,6 +275,9 @@ function start(): void {
     collisions.place(state);
     target.place(state, size);
     if (fitWanted) fitAll(scene);
+    else if (scaleWanted) scaleAll(scene);
+    mark.place();
+    modelPanel.place(state);
     overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
     if (!timeline.moment) bar.show(state);
     joints.show(state);
@@ -252,6 +301,7 @@ function start(): void {
     const observes = !session.drives;
     for (const { body } of [joints.panel, obstaclePanel.panel, servo.panel]) body.inert = observes;
     bar.observe(observes);
+    if (session.scene) modelPanel.build(session.scene, false);
     target.setEnabled(!observes);
   });
   const banner = new LinkBanner(page.banner, () => session.retry());
@@ -264,10 +314,11 @@ function start(): void {
     redraw();
   });
   stage.onFrame(() => session.takeNewest());
+  stage.onFrame(() => companions.takeNewest());
   stage.onFrame(() => timeline.flush());
   stage.onFrame(() => labels.place(stage.eye));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, timeline, target, robot, distances, collisions, map, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
+  Object.assign(window, { viewer: { session, stage, timeline, target, robot, companions, mark, selection, distances, collisions, map, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
 }
 
 try {

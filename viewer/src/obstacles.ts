@@ -1,14 +1,12 @@
 /** The obstacles in the view: bodies that the handle drags. */
-import { Group, Raycaster, Vector2, type Object3D } from "three";
+import { Group, type Object3D } from "three";
 import type { Obstacle, Scene, State } from "./protocol";
 import { paintedBody } from "./robot/meshes";
 import { setPose } from "./robot/skeleton";
 import { glass } from "./scene/palette";
+import type { Picking } from "./scene/picking";
 import { discard } from "./scene/shapes";
 import type { Stage } from "./scene/stage";
-
-/** A pointer that moved farther between down and up has dragged (pixels). */
-const CLICK = 4;
 
 type Told = { picked: (name: string) => void; problem: (sentence: string) => void };
 
@@ -17,16 +15,8 @@ export class Obstacles {
   private readonly bodies = new Map<string, { object: Group; shape: string }>();
   private names: string[] = [];
 
-  constructor(private readonly stage: Stage, private readonly tell: Told, isHandle: () => boolean) {
-    const canvas = stage.renderer.domElement;
-    let down: [number, number] | null = null;
-    canvas.addEventListener("pointerdown", (event) => {
-      down = event.button === 0 && !isHandle() ? [event.clientX, event.clientY] : null;
-    });
-    canvas.addEventListener("pointerup", (event) => {
-      if (down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < CLICK) this.pick(event);
-      down = null;
-    });
+  constructor(private readonly stage: Stage, private readonly tell: Told, picking: Picking) {
+    picking.add(this.group, (object) => this.pick(object));
   }
 
   build(scene: Scene): void {
@@ -69,12 +59,8 @@ export class Obstacles {
     );
   }
 
-  private pick(event: PointerEvent): void {
-    const box = this.stage.renderer.domElement.getBoundingClientRect();
-    const at = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
-    const ray = new Raycaster();
-    ray.setFromCamera(at, this.stage.eye);
-    let hit: Object3D | null = ray.intersectObject(this.group, true)[0]?.object ?? null;
+  private pick(object: Object3D): void {
+    let hit: Object3D | null = object;
     while (hit && hit.parent !== this.group) hit = hit.parent;
     if (hit) this.tell.picked(hit.name);
   }

@@ -1,5 +1,5 @@
 /** The messages of docs/viewer.md, with what the page adds. Units SI and radians; null stands for infinite or none. */
-import type { About, Comparison, Drawings, Empty, Failure, Pose, Postures, Report, Scene, Shape, State as FromSession } from "./messages";
+import type { About, Comparison, Drawings, Empty, Failure, ModelNews, Pose, Postures, Report, Scene, Shape, State as FromSession } from "./messages";
 
 export type * from "./messages";
 
@@ -10,7 +10,7 @@ export type Colour = [number, number, number, number] | null;
 export type MeshShape = Extract<Shape, { kind: "mesh" }>;
 /** A state of the session, or of the motion of a file, which may have no errors. */
 export type State = Omit<FromSession, "error"> & { error: { position: number | null; orientation: number | null } };
-export type FromServer = Scene | FromSession | Comparison | Report | Postures | Failure | About | Drawings;
+export type FromServer = Scene | FromSession | Comparison | Report | Postures | Failure | About | Drawings | ModelNews;
 
 export function isEmpty(data: object): data is Empty {
   return "empty" in data;

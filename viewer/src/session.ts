@@ -1,7 +1,7 @@
 /** One session with the server: the newest scene and state, and everything that wants to know of them. */
 import { Connection, type Link } from "./connection";
 import { Outbox } from "./outbox";
-import type { About, Comparison, Drawings, Failure, FromServer, Postures, Report, Scene, State, ToServer } from "./protocol";
+import type { About, Comparison, Drawings, Failure, FromServer, ModelNews, Postures, Report, Scene, State, ToServer } from "./protocol";
 
 type Events = {
   scene: Scene;
@@ -12,6 +12,7 @@ type Events = {
   failure: Failure;
   about: About;
   drawings: Drawings;
+  model: ModelNews;
   /** A message, before it goes. */
   sending: ToServer;
   link: { link: Link; wait: number };
@@ -78,6 +79,10 @@ export class Session {
     this.outbox.put(key, message);
   }
 
+  close(): void {
+    this.connection.close();
+  }
+
   retry(): void {
     this.connection.retry();
   }
@@ -112,6 +117,8 @@ export class Session {
     } else if (message.type === "session") {
       this.about = message;
       this.emit("about", message);
+    } else if (message.type === "model") {
+      this.emit("model", message);
     } else if (message.type === "drawings") {
       this.emit("drawings", message);
       this.wake();

@@ -10,7 +10,7 @@ const { look, visit } = browserOfFile();
 
 const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const CELL = fileURLToPath(new URL("../../docs/cell.toml", import.meta.url));
-const PANELS = ["joints", "show", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
+const PANELS = ["joints", "show", "model", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
 
 /**
  * What axe-core finds, best practices among it.
@@ -44,6 +44,9 @@ for (const [words, args, looks] of MODELS) {
           for (const name of ["velocity-ellipsoid", "principal-screws", "lost-direction"]) await showOverlay(page, name);
           await page.getByLabel("Orientation", { exact: true }).selectOption("roll, pitch, yaw");
           await page.locator('[data-panel="mobility"] dl').first().waitFor();
+          await page.getByRole("treeitem").nth(1).click();
+          await page.evaluate(() => /** @type {any} */ (window).viewer.companions.add(null));
+          await openPanel(page, "beside-1");
           await page.getByRole("button", { name: "Record" }).click();
           // A refused message shows a notice.
           await page.evaluate(() => /** @type {any} */ (window).viewer.session.send({ type: "joint", name: "nothing", value: 0 }));
@@ -71,6 +74,9 @@ for (const [width, height] of /** @type {const} */ ([[1366, 768], [844, 390], [3
     visit([CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3"], async (page) => {
       for (const name of PANELS) await openPanel(page, name);
       await showOverlay(page, "velocity-ellipsoid");
+      await page.getByRole("treeitem").nth(1).click();
+      await page.evaluate(() => /** @type {any} */ (window).viewer.companions.add(null));
+      await page.locator('[data-panel="beside"] [data-joint]').first().waitFor({ state: "attached" });
       await page.getByRole("button", { name: "Record" }).click();
       await page.getByRole("button", { name: /^Stop recording/ }).click();
       await page.locator('[data-panel="compare"] table').waitFor();

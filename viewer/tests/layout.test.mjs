@@ -9,7 +9,7 @@ const { look, visit } = browserOfFile();
 const CELL = fileURLToPath(new URL("../../docs/cell.toml", import.meta.url));
 /** Width, height, and whether it is looked at light alone or dark as well. */
 const SIZES = /** @type {const} */ ([[390, 844, 2], [768, 1024, 1], [830, 700, 1], [844, 390, 2], [1100, 800, 2], [1366, 768, 2], [1920, 1080, 2]]);
-const ALL = ["plots", "joints", "show", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
+const ALL = ["plots", "joints", "show", "model", "obstacles", "servo", "units", "pose", "singular", "distances", "screws", "mobility", "capability", "compare"];
 
 /**
  * Buttons of the bar and the view that are outside of the window, or under something else.

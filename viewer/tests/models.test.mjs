@@ -117,7 +117,7 @@ test("models of the catalogue are switched by the keyboard; an address of a mode
   visit(["panda"], async (page, server) => {
     await page.getByRole("button", { name: "Open a file" }).focus();
     await page.keyboard.press("Enter");
-    await page.getByRole("button", { name: "five-bar" }).focus();
+    await page.getByRole("button", { name: "five-bar", exact: true }).focus();
     await picture(page, "open-dialogue");
     await page.keyboard.press("Enter");
     await untilModel(page, "five-bar");

@@ -1,7 +1,7 @@
 /** A slider for each coordinate, with limits and unit; and for closed chains a switch for each joint that can be actuated. */
 import { h, Kept, type Child } from "../dom";
 import { fixed } from "../format";
-import { panel } from "../panels/panel";
+import { panel, type Panel } from "../panels/panel";
 import type { Coordinate, Actuator, Scene, State } from "../protocol";
 import type { Session } from "../session";
 import { digitsOf, inUnits, shown, unitOf, withUnit, type Quantity } from "../units";
@@ -18,7 +18,6 @@ const MANY = 12;
 type Row = { element: HTMLElement; slider: HTMLInputElement; field: QuantityField; touched: number };
 
 export class Joints {
-  readonly panel = panel("joints", "Joints", true);
   private readonly list = h("div", {});
   private readonly selfMotion = h("div", {});
   private readonly kept = { list: new Kept(this.list), selfMotion: new Kept(this.selfMotion) };
@@ -27,7 +26,7 @@ export class Joints {
   private selfSlider: HTMLInputElement | null = null;
   private timer = 0;
 
-  constructor(private readonly session: Session) {
+  constructor(private readonly session: Session, readonly panel = sliders()) {
     this.panel.body.append(this.list, this.selfMotion);
   }
 
@@ -167,6 +166,10 @@ export class Joints {
       h("p", { class: "note" }, "Joint motion with the tool at rest: drag the slider to move, release it to stop."),
     ];
   }
+}
+
+function sliders(): Panel {
+  return panel("joints", "Joints", true);
 }
 
 function inWords(value: number, unit: Quantity): string {

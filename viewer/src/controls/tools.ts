@@ -5,7 +5,13 @@ import type { Scene } from "../protocol";
 import type { Stage, View } from "../scene/stage";
 import type { Mode, Target } from "../target";
 
-const VIEWS: View[] = ["corner", "front", "side", "top"];
+/** Each has its number as a key. */
+const VIEWS: { view: View; title: string }[] = [
+  { view: "corner", title: "From a corner (1)" },
+  { view: "front", title: "From the front, along y (2)" },
+  { view: "side", title: "From the side, against x (3)" },
+  { view: "top", title: "From above, against z (4)" },
+];
 
 export class Tools {
   private readonly modes = {
@@ -32,12 +38,14 @@ export class Tools {
       h(
         "span", { class: "float-row" },
         this.flat,
-        group("View direction", VIEWS.map((view) => h("button", { class: "button small", type: "button", onclick: () => stage.view(view) }, view))),
+        group("View direction", VIEWS.map(({ view, title }) => h("button", { class: "button small", type: "button", title, onclick: () => stage.view(view) }, view))),
         h("button", { class: "button small", type: "button", title: "Show all (F)", "aria-label": "Show all", onclick: fit }, icon("fit")),
       ),
     );
     addEventListener("keydown", (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || isTyping(event.target)) return;
+      const looked = VIEWS[Number(event.key) - 1];
+      if (looked) stage.view(looked.view);
       if (event.key === "o") this.swapProjection();
       if (event.key === "w") this.setMode("translate");
       else if (event.key === "e" && this.mayTurn()) this.setMode("rotate");

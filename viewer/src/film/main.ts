@@ -12,6 +12,7 @@ import { singularPanel } from "../panels/singular";
 import type { Scene } from "../protocol";
 import { Robot } from "../robot/robot";
 import { Labels } from "../scene/labels";
+import { Picking } from "../scene/picking";
 import { Stage, type View } from "../scene/stage";
 import { nextTheme } from "../theme";
 import { Dock } from "../timeline/dock";
@@ -60,7 +61,7 @@ function show(recording: Recording, head: Head): void {
   const robot = new Robot({ changed: () => stage.invalidate(), problems: () => redraw() });
   const overlays = new Overlays(page.legend, labels, () => undefined);
   for (const name of head.overlays) overlays.show(name, true);
-  const obstacles = new Obstacles(stage, { picked: () => undefined, problem: (sentence) => page.toast(sentence, true) }, () => true);
+  const obstacles = new Obstacles(stage, { picked: () => undefined, problem: (sentence) => page.toast(sentence, true) }, new Picking(stage, () => true));
   const trail = new Trail();
   const [pose, singular] = [posePanel(), singularPanel(() => redraw())];
   page.right.append(pose.element, singular.element, new UnitControls().panel.element);

@@ -2,8 +2,11 @@
 import { fill, h, type Child } from "../dom";
 import type { Models, Refusal } from "../protocol";
 import { ACCEPTED, isMotion, modelFiles, request, type ModelFiles } from "./model_files";
+import { refusal } from "./refusal";
 
 const PARAMETER = "model";
+/** Shows a model in one way or another, once it is open. */
+type Show = (show: (id: string | null) => void) => void;
 
 /** Shows another model: that of the server, or one that it has opened. */
 function go(id: string | null): void {
@@ -29,8 +32,8 @@ export class OpenDialog {
     this.problem, this.choice, this.models,
   );
 
-  /** `motion` shows a motion of the model, or a map. */
-  constructor(private readonly motion: (file: File) => void) {
+  /** `motion` shows a motion of the model or a map, `beside` a model beside this one. */
+  constructor(private readonly motion: (file: File) => void, private readonly beside: (id: string | null) => void) {
     document.body.append(this.element);
     this.input.addEventListener("change", () => {
       void this.take([...(this.input.files ?? [])]);
@@ -71,16 +74,21 @@ export class OpenDialog {
   }
 
   private list({ name, catalogue, opened, opens }: Models): void {
-    const button = (label: string, work: () => void, note: Child): HTMLElement =>
-      h("div", { class: "offer" }, h("button", { class: "button small", type: "button", onclick: work }, label), h("span", { class: "note" }, note));
+    const button = (label: string, show: Show, note: Child): HTMLElement =>
+      h(
+        "div", { class: "offer" },
+        h("button", { class: "button small", type: "button", onclick: () => show(go) }, label),
+        h("button", { class: "button small", type: "button", "aria-label": `${label} beside the model that is shown`, title: "Show it beside this model", onclick: () => show((id) => this.stand(id)) }, "+"),
+        h("span", { class: "note" }, note),
+      );
     if (!opens) this.refuse("This server opens no files and no other models: other machines reach it, or a program holds its session.");
     fill(
       this.models,
       h("h3", {}, "Open on this server"),
-      button(name, () => go(null), "the model of the command"),
-      ...opened.map((model) => button(model.name, () => go(model.id), "opened")),
+      button(name, (show) => show(null), "the model of the command"),
+      ...opened.map((model) => button(model.name, (show) => show(model.id), "opened")),
       opens && h("h3", {}, "Catalogue"),
-      ...(opens ? catalogue.map((model) => button(model.name, () => void this.open(model.name, new Map()), model.description)) : []),
+      ...(opens ? catalogue.map((model) => button(model.name, (show) => void this.open(model.name, new Map(), show), model.description)) : []),
     );
   }
 
@@ -94,10 +102,15 @@ export class OpenDialog {
     this.choice.querySelector("button")?.focus();
   }
 
-  private async open(path: string, files: Map<string, Uint8Array>): Promise<void> {
+  private stand(id: string | null): void {
+    this.element.close();
+    this.beside(id);
+  }
+
+  private async open(path: string, files: Map<string, Uint8Array>, show: (id: string) => void = go): Promise<void> {
     try {
       const answer = await fetch("./models", { method: "POST", body: request(path, files) });
-      if (answer.ok) go(((await answer.json()) as { id: string }).id);
+      if (answer.ok) show(((await answer.json()) as { id: string }).id);
       else if (answer.headers.get("content-type")?.includes("json")) this.refuse((await answer.json()) as Refusal);
       else this.refuse(await answer.text());
     } catch (error) {
@@ -113,13 +126,7 @@ export class OpenDialog {
   private refuse(why: Refusal | string): void {
     const told = typeof why === "string" ? { message: why, file: null, line: null, column: null, text: null, help: "" } : why;
     if (!this.element.open) this.element.showModal();
-    fill(
-      this.problem,
-      told.file !== null && h("b", {}, `${told.file}, line ${told.line ?? "?"}, column ${told.column ?? "?"}`),
-      h("p", {}, told.message),
-      told.text !== null && told.text !== "" && h("code", {}, told.text),
-      told.help !== "" && h("p", { class: "note" }, told.help),
-    );
+    fill(this.problem, ...refusal(told));
   }
 }
 

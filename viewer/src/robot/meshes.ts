@@ -108,6 +108,9 @@ export async function mesh(visual: MeshVisual): Promise<Object3D> {
   if (!waiting) {
     waiting = read(url, visual).then(finite);
     loaded.set(key, waiting);
+    // Of a mesh that has changed, versions before it are not wanted again.
+    const [path] = url.split("?");
+    for (const known of loaded.keys()) if (path !== url && known.split(/[? ]/)[0] === path && !known.startsWith(`${url} `)) loaded.delete(known);
     waiting.catch(() => loaded.delete(key));
   }
   try {

@@ -2,11 +2,14 @@
 import { Box3, Group, Mesh, SphereGeometry, Vector3, type Object3D } from "three";
 import type { Scene, State } from "../protocol";
 import { drawn, glass, solid } from "../scene/palette";
+import { isShown } from "../scene/picking";
 import { along, arrow, discard, drum, rod, vector } from "../scene/shapes";
 import { visualBody } from "./meshes";
 import { sizes, type Sizes } from "./plan";
 import { axisInParent, jointMark, linkBody, mark, setPose, Slide } from "./skeleton";
 
+/** What a body belongs to: a link, a joint or a loop joint, by its number. */
+export type Owner = { kind: "link" | "joint" | "loop"; index: number };
 type Told = { changed: () => void; problems: (sentences: string[]) => void };
 
 export class Robot {
@@ -15,6 +18,7 @@ export class Robot {
   private slides: { slide: Slide; parent: number; from: Vector3; child: number; to: Vector3 }[] = [];
   private loops: { ball: Object3D; open: Mesh }[] = [];
   private contacts: { arrow: Object3D; open: Mesh }[] = [];
+  private readonly owners = new Map<Object3D, Owner>();
   private size: Sizes = { rod: 0.01, joint: 0.02 };
   private generation = 0;
   private shown = true;
@@ -27,20 +31,27 @@ export class Robot {
     for (const child of [...this.group.children]) discard(child);
     this.size = sizes(scene);
     [this.slides, this.loops, this.contacts] = [[], [], []];
+    this.owners.clear();
     this.links = scene.links.map(({ name }, index) => {
       const frame = new Group();
       frame.name = name;
       const [skeleton, shapes] = [linkBody(scene, index, this.size), new Group()];
       frame.add(skeleton, shapes);
       this.group.add(frame);
+      this.owners.set(frame, { kind: "link", index });
       return { frame, skeleton, shapes };
     });
-    for (const joint of scene.joints) {
+    scene.joints.forEach((joint, index) => {
       const drawing = jointMark(scene, joint, this.size);
       if (drawing) this.links[joint.parent]?.skeleton.add(drawing);
-      if (joint.kind === "prismatic" || joint.kind === "cylindrical") this.addSlide(scene, joint);
-    }
-    for (const loop of scene.loops) this.loops.push(this.loop(scene, loop.kind, loop.actuated));
+      const slide = joint.kind === "prismatic" || joint.kind === "cylindrical" ? this.addSlide(scene, joint) : null;
+      for (const body of [drawing, slide]) if (body) this.owners.set(body, { kind: "joint", index });
+    });
+    scene.loops.forEach(({ kind, actuated }, index) => {
+      const loop = this.loop(scene, kind, actuated);
+      this.loops.push(loop);
+      this.owners.set(loop.ball, { kind: "loop", index });
+    });
     for (const _ of scene.contacts) this.contacts.push(this.contact());
     this.hasShapes = scene.links.some((link) => link.visuals.length > 0);
     void this.load(scene, this.generation);
@@ -81,6 +92,31 @@ export class Robot {
   box(): Box3 {
     this.group.updateMatrixWorld(true);
     return new Box3().setFromObject(this.group);
+  }
+
+  /** The link, joint or loop joint that a body belongs to. */
+  ownerOf(body: Object3D): Owner | null {
+    for (let at: Object3D | null = body; at; at = at.parent) {
+      const owner = this.owners.get(at);
+      if (owner) return owner;
+    }
+    return null;
+  }
+
+  /** The meshes by which an item is shown now. */
+  meshesOf({ kind, index }: { kind: string; index: number }): Mesh[] {
+    const found: Mesh[] = [];
+    this.group.traverse((part) => {
+      if (!(part instanceof Mesh) || !isShown(part)) return;
+      const owner = this.ownerOf(part);
+      if (owner?.kind === kind && owner.index === index) found.push(part);
+    });
+    return found;
+  }
+
+  /** The frame of a link, which moves with it. */
+  linkFrame(index: number): Object3D | null {
+    return this.links[index]?.frame ?? null;
   }
 
   /** Where the joint of a coordinate is now. */
@@ -130,10 +166,10 @@ export class Robot {
     });
   }
 
-  private addSlide(scene: Scene, joint: Scene["joints"][number]): void {
+  private addSlide(scene: Scene, joint: Scene["joints"][number]): Object3D | null {
     const child = scene.links[joint.child]?.anchors.find((anchor) => anchor.kind === "joint");
     const parent = scene.links[joint.parent]?.anchors.find((anchor) => anchor.kind === "joint");
-    if (!child) return;
+    if (!child) return null;
     const at = vector(joint.origin.position);
     const back = parent ? vector(parent.position).sub(at) : new Vector3();
     const inLine = back.lengthSq() > 0 && Math.abs(Math.sin(back.angleTo(axisInParent(joint)))) < 0.02;
@@ -141,6 +177,7 @@ export class Robot {
     const slide = new Slide(this.size.rod * 0.75);
     this.slides.push({ slide, parent: joint.parent, from, child: joint.child, to: vector(child.position) });
     this.group.add(slide.object);
+    return slide.object;
   }
 
   private loop(scene: Scene, kind: string, actuated: boolean): { ball: Object3D; open: Mesh } {

@@ -1,7 +1,7 @@
 /** The view: camera, lights, ground; draws only when somebody said that something changed. */
 import {
-  AmbientLight, Box3, Color, DirectionalLight, HemisphereLight, Mesh, OrthographicCamera, PerspectiveCamera,
-  PlaneGeometry, Scene, ShadowMaterial, Sphere, Vector3, WebGLRenderer,
+  AmbientLight, Box3, Color, DirectionalLight, HemisphereLight, Mesh, MOUSE, OrthographicCamera, PerspectiveCamera,
+  PlaneGeometry, Scene, ShadowMaterial, Sphere, TOUCH, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { colour, onTheme } from "../theme";
@@ -13,6 +13,14 @@ const FROM: Record<View, [number, number, number]> = {
   front: [0, -1, 0.0001],
   side: [1, 0, 0.0001],
   top: [0, -0.0001, 1],
+};
+
+/** A planar mechanism is seen flat from within this angle about z (rad): a drag pans, and does not tilt it. */
+const FLAT = 1e-3;
+const KEYS = "arrow keys pan, with Shift they rotate, plus and minus zoom, 1 to 4 look from a corner, the front, a side and above, F fits all.";
+const DRAGS = {
+  turns: `View of the robot. Drag to rotate, wheel to zoom, right button to pan; ${KEYS}`,
+  pans: `View of the mechanism in its plane. Drag to pan, wheel to zoom, right button to rotate; ${KEYS}`,
 };
 
 /** One key press of zooming, of turning (in steps of OrbitControls) and of panning (pixels). */
@@ -37,6 +45,7 @@ export class Stage {
   private grid: Ground | null = null;
   private scheduled = false;
   private fitted = new Sphere(new Vector3(), 1);
+  private planar = false;
   /** Frames drawn, for tests that a page at rest draws none. */
   frames = 0;
 
@@ -47,17 +56,20 @@ export class Stage {
     const canvas = this.renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "application");
-    canvas.setAttribute("aria-label", "View of the robot. Drag to rotate, wheel to zoom, right button to pan; arrow keys pan, with Shift they rotate, plus and minus zoom, F fits all.");
     element.prepend(canvas);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
-    this.orbit.addEventListener("change", () => this.invalidate());
+    this.orbit.addEventListener("change", () => {
+      this.chooseDrag();
+      this.invalidate();
+    });
     this.orbit.listenToKeyEvents(canvas);
     [this.orbit.keyRotateSpeed, this.orbit.keyPanSpeed] = [KEY_TURN, KEY_PAN];
     canvas.addEventListener("keydown", ({ key, ctrlKey, metaKey, altKey }) => {
       const way = { "+": -1, "=": -1, "-": 1 }[key];
       if (way !== undefined && !(ctrlKey || metaKey || altKey)) this.zoom(ZOOM ** way);
     });
+    this.chooseDrag();
     this.lights(!slow);
     new ResizeObserver(() => this.resize()).observe(element);
     onTheme(() => this.paint());
@@ -105,7 +117,24 @@ export class Stage {
     this.eye = orthographic ? this.parallel : this.camera;
     this.follow();
     for (const told of this.eyes) told(this.eye);
+    this.chooseDrag();
     this.invalidate();
+  }
+
+  /** For a planar mechanism. */
+  setPlanar(planar: boolean): void {
+    this.planar = planar;
+    this.chooseDrag();
+  }
+
+  /** What the pointer does: a mechanism that is seen in its plane stays flat. */
+  private chooseDrag(): void {
+    const way = this.camera.position.clone().sub(this.orbit.target).normalize();
+    const pans = this.planar && this.isOrthographic && Math.hypot(way.x, way.y) < FLAT;
+    const [first, second] = pans ? [MOUSE.PAN, MOUSE.ROTATE] : [MOUSE.ROTATE, MOUSE.PAN];
+    this.orbit.mouseButtons = { LEFT: first, MIDDLE: MOUSE.DOLLY, RIGHT: second };
+    this.orbit.touches = { ONE: pans ? TOUCH.PAN : TOUCH.ROTATE, TWO: pans ? TOUCH.DOLLY_ROTATE : TOUCH.DOLLY_PAN };
+    this.renderer.domElement.setAttribute("aria-label", pans ? DRAGS.pans : DRAGS.turns);
   }
 
   /** Called when another camera is looked through. */
@@ -129,8 +158,13 @@ export class Stage {
   /** Shows all of a box. */
   fit(box: Box3): void {
     if (box.isEmpty()) return;
-    box.getBoundingSphere(this.fitted);
+    this.frame(box);
     this.look(this.camera.position.clone().sub(this.orbit.target));
+  }
+
+  /** What the next view shows all of. */
+  frame(box: Box3): void {
+    if (!box.isEmpty()) box.getBoundingSphere(this.fitted);
   }
 
   view(view: View): void {
