@@ -114,7 +114,7 @@ test("the tree is moved through, folded and searched by the keyboard, and makes 
     assert.equal(await page.locator('[role="treeitem"][aria-selected="true"]').getAttribute("data-item"), last);
 
     await search.fill("LINK7");
-    await page.getByText("1 of").waitFor();
+    await page.locator('[data-panel="model"]').getByText(/^1 of/).waitFor();
     await search.press("Enter");
     assert.equal((await marked(page)).name, "link7");
     assert.equal(await search.inputValue(), "");

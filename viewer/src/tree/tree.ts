@@ -122,7 +122,7 @@ export class Tree {
     else this.tree.removeAttribute("aria-activedescendant");
     this.found.hidden = this.wanted === "";
     const count = this.rows.filter(({ item }) => this.matches(item)).length;
-    text(this.found, `${count} of ${this.rows.length}${count > 0 ? "; Enter selects the first" : ""}`);
+    text(this.found, this.wanted === "" ? "" : `${count} of ${this.rows.length}${count > 0 ? "; Enter selects the first" : ""}`);
   }
 
   private fold(item: Item, folded: boolean): void {
