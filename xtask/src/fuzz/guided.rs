@@ -98,6 +98,8 @@ fn feed(
                 "-malloc_limit_mb=500",
                 "-timeout=1200",
                 "-len_control=100",
+                // The targets bound the processor time; time on the clock depends on the machine.
+                "-report_slow_units=3600",
             ])
             .arg("-print_final_stats=1")
             .args([place("corpus"), place("seeds")])
