@@ -28,6 +28,7 @@
 mod acceptance;
 mod analytic;
 mod ascent;
+#[cfg(feature = "sweep")]
 mod attempt;
 mod avoidance;
 mod branches;
