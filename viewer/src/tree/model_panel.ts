@@ -18,6 +18,8 @@ export class ModelPanel {
   private readonly keptDetails = new Kept(this.details);
   private readonly keptCard = new Kept(this.card);
   private pose: { element: HTMLElement; set: (i: number, value: string) => void } | null = null;
+  /** What was brought into sight last: what is merely marked moves nothing. */
+  private revealed: string | null = null;
   private scene: Scene | null = null;
   private state: State | null = null;
 
@@ -28,7 +30,7 @@ export class ModelPanel {
       if (open) this.show(true);
       else selection.hover(null);
     });
-    selection.onChange(() => this.show(true));
+    selection.onChange((byPicking) => this.show(byPicking || selection.selected?.key !== this.revealed));
     inUnits(this.panel.body, () => this.show(false));
     addEventListener("keydown", (event) => {
       if (event.key === "Escape" && !event.defaultPrevented) selection.select(null);
@@ -61,6 +63,7 @@ export class ModelPanel {
     this.keptCard.fill(made, () => (selected ? this.cardOf(selected, tool) : []));
     if (!this.panel.isOpen()) return;
     this.tree.show(selected, scene.frame, reveal);
+    this.revealed = selected?.key ?? null;
     this.keptDetails.fill([...made, chosenUnits()], () => this.detailsOf(selected, tool));
     if (this.state) this.place(this.state);
   }

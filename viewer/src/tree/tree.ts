@@ -54,7 +54,8 @@ export class Tree {
     }
     if (!selected || !reveal) return;
     for (let at = selected.parent; at; at = at.parent) this.folded.delete(at.key);
-    if (!this.matches(selected)) this.filter.value = "";
+    // Not under the hands of who is searching.
+    if (!this.matches(selected) && document.activeElement !== this.filter) this.filter.value = "";
     this.active = selected.key;
     this.paint();
     this.rows.find(({ item }) => item.key === selected.key)?.element.scrollIntoView({ block: "nearest" });
