@@ -48,6 +48,9 @@ class ServoController : public controller_interface::ControllerInterface {
                 cylindroid::Mechanism::parse(get_robot_description(), "robot_description.urdf"));
             options_ = cylindroid::Servo::defaults(*robot_);
             if (!frame.empty()) options_.frame = robot_->frame(frame);
+            // With fewer than six joints the rotation follows from the position.
+            if (joints_.size() < 6)
+                for (int i = 3; i < 6; i++) options_.components[i] = false;
             q_ = robot_->home();
             places_.clear();
             for (const auto &joint : joints_) places_.push_back(place(joint));

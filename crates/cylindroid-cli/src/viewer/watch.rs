@@ -21,6 +21,8 @@ use super::sessions::Sessions;
 use super::start::Start;
 
 const INTERVAL: Duration = Duration::from_millis(500);
+/// Times of files are those of a clock that may be late by this.
+const TICK: Duration = Duration::from_millis(100);
 
 /// The files of a model.
 #[derive(Debug)]
@@ -54,7 +56,8 @@ pub(super) struct ModelJson {
 impl Watch {
     /// The start of a server, and a watch over all files that it was made from.
     pub(crate) fn of(load: impl FnOnce() -> Result<Start>) -> Result<(Start, Self)> {
-        let since = SystemTime::now();
+        let now = SystemTime::now();
+        let since = now.checked_sub(TICK).unwrap_or(now);
         let (start, read) = files_read(load);
         let start = start?;
         let files = files_of(Some(&start), &read).into_iter();

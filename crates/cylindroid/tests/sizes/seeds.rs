@@ -439,6 +439,8 @@ fn sweeps(world: &mut World) {
             ..VoxelGrid::default()
         }),
     ];
+    all(world, &sources);
+    all(world, &[Values::Numbers(vec![]), Values::Counts(vec![1]), Values::Texts(vec!["a"])]);
     for source in sources {
         for quantities in [vec![], vec![Quantity::Pose], vec![Quantity::Measures]] {
             world.keep(SweepOptions { source: source.clone(), quantities, ..Default::default() });

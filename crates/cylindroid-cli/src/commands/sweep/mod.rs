@@ -28,6 +28,7 @@ use crate::plot;
 
 pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = load(&args.model, &[])?;
+    check_options_of_maps(args)?;
     let chosen = Chosen::from(args);
     let source = chosen.source(&robot)?;
     let parameters = chosen.parameters(&robot)?;
@@ -131,6 +132,21 @@ fn interrupted() -> anyhow::Result<Exit> {
 
 fn is_csv(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
+}
+
+/// Refuses options of capability maps without one; clap does not where another source excludes maps.
+fn check_options_of_maps(args: &SweepArgs) -> anyhow::Result<()> {
+    let given = [
+        ("--directions", args.directions.is_some()),
+        ("--rolls", args.rolls.is_some()),
+        ("--reach-from", args.reach_from.is_some()),
+    ];
+    match given.iter().find(|(_, is_given)| *is_given && args.reach.is_empty()) {
+        Some((name, _)) => {
+            anyhow::bail!("{name} is an option of capability maps, which --reach asks for")
+        }
+        None => Ok(()),
+    }
 }
 
 /// The designs, if parameters vary.
