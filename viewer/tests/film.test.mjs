@@ -33,7 +33,7 @@ async function record(page, axis, by) {
  * @param {(film: Page, html: string) => Promise<void>} work
  */
 async function film(page, name, work) {
-  const html = await saved(page, "Save a page that plays the recording by itself");
+  const html = await saved(page, "Save HTML that plays the recording by itself");
   const path = join(folder, `${name}.html`);
   await writeFile(path, html);
   const browser = await launch();
@@ -151,7 +151,7 @@ test("pictures at even times are a zip of numbered PNG", () =>
     const before = await state(page);
     const { times } = JSON.parse(await saved(page, "Save the recording as JSON"));
     await enter(page.getByLabel("Frames per second"), 10);
-    const zip = await saved(page, "Save pictures as a zip of numbered PNG", "latin1");
+    const zip = await saved(page, "Save frames as a zip of numbered PNG", "latin1");
     const files = unzipSync(Buffer.from(zip, "latin1"));
     const names = Object.keys(files);
     assert.equal(names.length, Math.floor(times.at(-1) * 10 + 1e-6) + 1);

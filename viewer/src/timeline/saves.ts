@@ -23,7 +23,7 @@ const RATE = { least: 1, most: 120, first: 30 };
 export class Saves {
   private readonly rate = h("input", { type: "number", class: "field", min: RATE.least, max: RATE.most, step: "any", value: RATE.first, "aria-label": "Frames per second", title: "Frames per second" });
   private readonly words = h("span", {}, "frames");
-  private readonly frames = this.button("pictures as a zip of numbered PNG", this.words, () => void this.saveFrames());
+  private readonly frames = this.button("frames as a zip of numbered PNG", this.words, () => void this.saveFrames());
   /** Those of the group of buttons, and the rate after it. */
   readonly elements: HTMLElement[];
   readonly after: HTMLElement;
@@ -34,7 +34,7 @@ export class Saves {
       this.button("the recording as JSON", "JSON", () => this.save("json", async (recording) => recording.json())),
       this.button("the recording as CSV", "CSV", () => this.save("csv", async (recording) => recording.csv())),
       this.button("the plots as PNG", "PNG", () => this.save("png", () => source.plots(), "-plots")),
-      this.button("a page that plays the recording by itself", "HTML", () => this.save("html", (recording) => filmPage(recording, source.look()))),
+      this.button("HTML that plays the recording by itself", "HTML", () => this.save("html", (recording) => filmPage(recording, source.look()))),
     ];
     this.after = h("span", { class: "group", role: "group", "aria-label": "Pictures" }, this.frames, h("label", { class: "note rate" }, this.rate, " per s"));
   }
