@@ -1873,8 +1873,8 @@ class SweepPlan:
         columns: Sequence[tuple[str, str, str, Callable[..., ArrayLike]]] = ...,
         direction: ArrayLike | None = None,
         reach: dict[str, tuple[float, float, int]] | None = None,
-        directions: int = 50,
-        rolls: int = 12,
+        directions: int = ...,
+        rolls: int = ...,
         reach_from: ArrayLike | None = None,
     ) -> SweepPlan: ...
     @property
