@@ -1,5 +1,6 @@
 //! The motion of `move` as an SVG: joints, pose error and singular value ratio over time.
 
+mod axes;
 mod conics;
 pub(crate) mod ellipses;
 mod fine;

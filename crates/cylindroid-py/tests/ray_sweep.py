@@ -1,30 +1,18 @@
 """A sweep on a local Ray cluster of two workers, one of which is killed on the way; run by
 test_engines.py, in a network namespace that has nothing but the loopback interface."""
 
-import fcntl
 import os
 import pathlib
 import signal
-import socket
-import struct
 import sys
 
 import ray
+from loopback import raise_loopback
 
 import cylindroid as cy
 
 folder = pathlib.Path(sys.argv[1])
 MARK = folder / "killed"
-
-
-def raise_loopback():
-    """Sets the interface `lo` up, which a new namespace has down."""
-    up, request = 1, struct.pack("16sh14x", b"lo", 1)
-    get, put = 0x8913, 0x8914
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as control:
-        (flags,) = struct.unpack("16xh14x", fcntl.ioctl(control, get, request))
-        fcntl.ioctl(control, put, struct.pack("16sh14x", b"lo", flags | up))
-    assert [name for _, name in socket.if_nameindex()] == ["lo"]
 
 
 def reach(q, names):

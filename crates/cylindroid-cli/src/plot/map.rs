@@ -7,8 +7,7 @@ use cylindroid::{Error, Result};
 use plotters::prelude::*;
 
 use super::fine::{Fine, at, px};
-use super::{Area, COLOURS, Drawn, FONT, TICK, save, titled};
-use crate::output::{self, without_rounding};
+use super::{Area, COLOURS, Drawn, FONT, axes, save, titled};
 
 /// Most modes that are drawn.
 const PANELS: usize = 12;
@@ -89,13 +88,8 @@ fn mode(map: &Map, number: usize, area: &Area<'_>) -> Drawn {
     };
     let (dx, dy) = (half(x), half(y));
     let range = |from: f64, to: f64, by: f64| if to > from { from..to } else { from - by..to + by };
-    let [left, right, top, bottom] = MARGINS;
-    let mut chart = ChartBuilder::on(&area)
-        .margin_right(px(right))
-        .margin_top(px(top))
-        .x_label_area_size(px(bottom))
-        .y_label_area_size(px(left))
-        .build_cartesian_2d(range(x.from, x.to, dx), range(y.from, y.to, dy))?;
+    let ranges = [range(x.from, x.to, dx), range(y.from, y.to, dy)];
+    let mut chart = axes::panel(&area, MARGINS, ranges)?;
     // Cells of a column with one colour are one rectangle.
     let rows = usize::try_from(y.count)?;
     for first in (0..map.cells()).step_by(rows.max(1)) {
@@ -121,20 +115,8 @@ fn mode(map: &Map, number: usize, area: &Area<'_>) -> Drawn {
             from = to;
         }
     }
-    chart
-        .configure_mesh()
-        .x_desc(format!("{} [{}]", x.name, Map::unit(&x.name)))
-        .y_desc(format!("{} [{}]", y.name, Map::unit(&y.name)))
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.12))
-        .axis_desc_style((FONT, 14))
-        .label_style((FONT, 12))
-        .set_all_tick_mark_size(TICK)
-        .x_labels(6)
-        .y_labels(6)
-        .x_label_formatter(&|x| output::number(without_rounding(*x)))
-        .y_label_formatter(&|y| output::number(without_rounding(*y)))
-        .draw()?;
+    let names = [x, y].map(|axis| format!("{} [{}]", axis.name, Map::unit(&axis.name)));
+    axes::draw(&mut chart, names, [6, 6], &axes::plain)?;
     let own = |locus: &&Locus| locus.modes.contains(&number);
     for locus in map.loci.iter().filter(own) {
         let points = locus.points.iter().map(|p| (p[0], p[1]));

@@ -91,9 +91,9 @@ pub(super) const fn index_of(k: i32) -> i32 {
 }
 
 impl Samples {
-    /// Ends the samples of a value, with this number of solutions inside and outside the limits.
-    pub(super) fn end_group(&mut self, value: f64, solutions: usize) {
-        let first = self.groups.iter().map(|group| group.own.end).max().unwrap_or(0);
+    /// Groups the samples from `first` on, of a value with this number of solutions inside and outside
+    /// the limits.
+    pub(super) fn end_group(&mut self, first: usize, value: f64, solutions: usize) {
         let own = first..self.all.len();
         let place = self.groups.partition_point(|group| group.value < value);
         self.groups.insert(place, Group { value, solutions, own });

@@ -160,7 +160,7 @@ impl Solver {
                 let far = squares.sum::<f64>() + apart * apart;
                 Sample { value, angles, far, excluded }
             };
-            let mut count = 0;
+            let (first, mut count) = (samples.all.len(), 0);
             let found = formulas.analytic.solve_with(target, &q, |angles, most| {
                 count += 1;
                 if most < NEARLY_WITHIN {
@@ -174,7 +174,7 @@ impl Solver {
                 }
                 samples.all.push(sample);
             }
-            samples.end_group(value, count + found.len());
+            samples.end_group(first, value, count + found.len());
         }
         let preferred = places.map(|c| self.preferred[c]);
         if is_accepted {

@@ -3,10 +3,9 @@
 use plotters::prelude::*;
 
 use super::super::fine::{Fine, px};
-use super::super::{Area, COLOURS, Drawn, FONT, TICK, titled};
+use super::super::{Area, COLOURS, Drawn, axes, titled};
 use super::plan::{BAR, Name};
-use super::shade::Shade;
-use crate::output::{number, without_rounding};
+use super::shade::{Shade, finite_range};
 
 /// Points at most.
 const POINTS: usize = 4000;
@@ -26,7 +25,8 @@ pub(super) fn draw(
     let [left, right, top, bottom] = MARGINS;
     let width = if pairs.len() == 1 { WIDE[1] } else { WIDE[0] };
     let wide = width - left - right;
-    let ranges: Vec<[f64; 2]> = data.iter().map(|column| range(column)).collect();
+    let ranges: Vec<[f64; 2]> =
+        data.iter().map(|column| finite_range(column).unwrap_or([0.0, 1.0])).collect();
     // One scale for all, so that an axis is as long in each panel.
     let largest = ranges.iter().map(|[a, b]| b - a).fold(0.0, f64::max);
     let high = wide + top + bottom;
@@ -72,41 +72,14 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// Smallest and largest finite number.
-fn range(column: &[f64]) -> [f64; 2] {
-    let finite = || column.iter().copied().filter(|x| x.is_finite());
-    let (low, high) =
-        (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    if low > high { [0.0, 1.0] } else { [low, high] }
-}
-
 fn panel(
     area: &Area<'_>,
     names: &[Name; 2],
-    [across, up]: [std::ops::Range<f64>; 2],
+    ranges: [std::ops::Range<f64>; 2],
     (points, radius): (impl Iterator<Item = ((f64, f64), RGBColor)>, u32),
 ) -> Drawn {
-    let [left, right, top, bottom] = MARGINS;
-    let mut chart = ChartBuilder::on(area)
-        .margin_right(px(right))
-        .margin_top(px(top))
-        .x_label_area_size(px(bottom))
-        .y_label_area_size(px(left))
-        .build_cartesian_2d(across, up)?;
-    chart
-        .configure_mesh()
-        .x_desc(names[0].label())
-        .y_desc(names[1].label())
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.08))
-        .axis_desc_style((FONT, 14))
-        .label_style((FONT, 12))
-        .set_all_tick_mark_size(TICK)
-        .x_labels(6)
-        .y_labels(6)
-        .x_label_formatter(&|x| number(without_rounding(*x)))
-        .y_label_formatter(&|y| number(without_rounding(*y)))
-        .draw()?;
+    let mut chart = axes::panel(area, MARGINS, ranges)?;
+    axes::draw(&mut chart, names.each_ref().map(Name::label), [6, 6], &axes::plain)?;
     chart.draw_series(points.map(|(at, colour)| Circle::new(at, radius, colour.filled())))?;
     Ok(())
 }

@@ -3,16 +3,18 @@
 use plotters::prelude::*;
 
 use super::super::fine::{Fine, px};
-use super::super::{Area, COLOURS, Drawn, FONT, TICK, titled};
+use super::super::{Area, COLOURS, Drawn, axes, titled};
 use super::plan::Name;
-use super::shade::is_logarithmic;
-use crate::output::{number, without_rounding};
+use super::shade::{finite_range, is_logarithmic};
+use crate::output::number;
 
 /// Bins at most.
 const BINS: usize = 60;
 /// Width of a panel, also of a single one, and height [px].
 const WIDE: [u32; 2] = [330, 560];
 const HIGH: u32 = 260;
+/// Margins of a panel: left, right, top, bottom [px].
+const MARGINS: [u32; 4] = [64, 16, 8, 46];
 
 pub(super) fn draw(svg: &mut String, title: &str, names: &[Name], data: &[&[f64]]) -> Drawn {
     let count = names.len();
@@ -34,11 +36,10 @@ pub(super) fn draw(svg: &mut String, title: &str, names: &[Name], data: &[&[f64]
 
 fn panel(area: &Area<'_>, name: &Name, numbers: &[f64]) -> Drawn {
     let finite = || numbers.iter().copied().filter(|x| x.is_finite());
-    let (low, high) =
-        (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    let is_logarithmic = is_logarithmic(low, high);
+    let range = finite_range(numbers);
+    let is_logarithmic = range.is_some_and(is_logarithmic);
     let own = |x: f64| if is_logarithmic { x.log10() } else { x };
-    let (low, high) = if low > high { (0.0, 1.0) } else { (own(low), own(high)) };
+    let [low, high] = range.map_or([0.0, 1.0], |ends| ends.map(own));
     // Numbers that are all the same have one bin.
     let (low, high) = if high > low { (low, high) } else { (low - 0.5, high + 0.5) };
     let bins = ((finite().count() as f64).sqrt() as usize).clamp(1, BINS);
@@ -48,30 +49,12 @@ fn panel(area: &Area<'_>, name: &Name, numbers: &[f64]) -> Drawn {
         counts[bin.min(bins - 1)] += 1;
     }
     let most = counts.iter().max().copied().unwrap_or(0).max(1) as f64;
-    let mut chart = ChartBuilder::on(area)
-        .margin_right(px(16))
-        .margin_top(px(8))
-        .x_label_area_size(px(46))
-        .y_label_area_size(px(64))
-        .build_cartesian_2d(low..high, 0.0..1.05 * most)?;
+    let mut chart = axes::panel(area, MARGINS, [low..high, 0.0..1.05 * most])?;
     let form = |x: &f64| match is_logarithmic {
         true => number(format!("{:.2e}", 10.0_f64.powf(*x)).parse().unwrap_or(0.0)),
-        false => number(without_rounding(*x)),
+        false => axes::plain(x),
     };
-    chart
-        .configure_mesh()
-        .x_desc(name.label())
-        .y_desc("rows")
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.08))
-        .axis_desc_style((FONT, 14))
-        .label_style((FONT, 12))
-        .set_all_tick_mark_size(TICK)
-        .x_labels(6)
-        .y_labels(5)
-        .x_label_formatter(&form)
-        .y_label_formatter(&|y| number(without_rounding(*y)))
-        .draw()?;
+    axes::draw(&mut chart, [name.label(), "rows".to_owned()], [6, 5], &form)?;
     let edge = |i: usize| low + (high - low) * i as f64 / bins as f64;
     let bars = counts.iter().enumerate().filter(|(_, count)| **count > 0).map(|(i, count)| {
         Rectangle::new([(edge(i), 0.0), (edge(i + 1), *count as f64)], COLOURS[0].mix(0.8).filled())

@@ -37,13 +37,11 @@ pub(super) struct Shade {
 
 impl Shade {
     pub(super) fn of(name: &Name, numbers: &[f64]) -> Self {
-        let finite = || numbers.iter().copied().filter(|x| x.is_finite());
-        let (low, high) =
-            (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-        let is_logarithmic = is_logarithmic(low, high);
-        let (low, high) = if low > high { (0.0, 1.0) } else { (low, high) };
+        let range = finite_range(numbers);
+        let is_logarithmic = range.is_some_and(is_logarithmic);
         let own = |x: f64| if is_logarithmic { x.ln() } else { x };
-        Self { name: name.clone(), low: own(low), high: own(high), is_logarithmic }
+        let [low, high] = range.map_or([0.0, 1.0], |ends| ends.map(own));
+        Self { name: name.clone(), low, high, is_logarithmic }
     }
 
     /// The level of a number, from 0; `None` without one.
@@ -88,8 +86,16 @@ impl Shade {
     }
 }
 
+/// Smallest and largest finite number.
+pub(super) fn finite_range(numbers: &[f64]) -> Option<[f64; 2]> {
+    numbers.iter().copied().filter(|x| x.is_finite()).fold(None, |range, x| match range {
+        None => Some([x, x]),
+        Some([low, high]) => Some([f64::min(low, x), f64::max(high, x)]),
+    })
+}
+
 /// True for positive numbers over several orders of magnitude.
-pub(super) fn is_logarithmic(low: f64, high: f64) -> bool {
+pub(super) fn is_logarithmic([low, high]: [f64; 2]) -> bool {
     low > 0.0 && high.is_finite() && high > LOGARITHMIC * low
 }
 

@@ -3,10 +3,9 @@
 use plotters::prelude::*;
 
 use super::super::fine::{Fine, px};
-use super::super::{Area, Drawn, FONT, TICK, titled};
+use super::super::{Area, Drawn, axes, titled};
 use super::plan::{BAR, PANELS, SliceAxis};
 use super::shade::Shade;
-use crate::output::{number, without_rounding};
 
 /// Width of a panel, also of a single one, and height of its title [px].
 const WIDE: [u32; 2] = [320, 560];
@@ -93,7 +92,7 @@ fn panels<'a>(axes: &'a [SliceAxis], data: &[&[f64]], numbers: &[f64]) -> Vec<(S
     let chosen = |i: usize| if shown > 1 { i * (of_panels - 1) / (shown - 1) } else { 0 };
     let panel = |i: usize| {
         let name = axes.get(2).map_or_else(String::new, |axis| {
-            let value = number(without_rounding(axis.axis.value(chosen(i) as u64)));
+            let value = axes::plain(&axis.axis.value(chosen(i) as u64));
             match axis.name.unit.as_str() {
                 "" | "1" => format!("{} = {value}", axis.name.name),
                 unit => format!("{} = {value} {unit}", axis.name.name),
@@ -109,14 +108,9 @@ fn slice(panel: &Panel<'_>, name: &str, shade: &Shade, area: &Area<'_>) -> Drawn
     let (x, y) = (&panel.x.axis, &panel.y.axis);
     let half = |axis: &SliceAxis| 0.5 * extent(axis) / axis.axis.count as f64;
     let (dx, dy) = (half(panel.x), half(panel.y));
-    let [left, right, top, bottom] = MARGINS;
     let range = |from: f64, to: f64, by: f64| from.min(to) - by..from.max(to) + by;
-    let mut chart = ChartBuilder::on(&area)
-        .margin_right(px(right))
-        .margin_top(px(top))
-        .x_label_area_size(px(bottom))
-        .y_label_area_size(px(left))
-        .build_cartesian_2d(range(x.from, x.to, dx), range(y.from, y.to, dy))?;
+    let ranges = [range(x.from, x.to, dx), range(y.from, y.to, dy)];
+    let mut chart = axes::panel(&area, MARGINS, ranges)?;
     let rows = usize::try_from(y.count)?;
     for (i, column) in panel.numbers.chunks(rows).enumerate() {
         let center = x.value(i as u64);
@@ -136,20 +130,7 @@ fn slice(panel: &Panel<'_>, name: &str, shade: &Shade, area: &Area<'_>) -> Drawn
             first = last + 1;
         }
     }
-    chart
-        .configure_mesh()
-        .x_desc(panel.x.name.label())
-        .y_desc(panel.y.name.label())
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.08))
-        .axis_desc_style((FONT, 14))
-        .label_style((FONT, 12))
-        .set_all_tick_mark_size(TICK)
-        .x_labels(5)
-        .y_labels(6)
-        .x_label_formatter(&|x| number(without_rounding(*x)))
-        .y_label_formatter(&|y| number(without_rounding(*y)))
-        .draw()?;
+    axes::draw(&mut chart, [panel.x, panel.y].map(|axis| axis.name.label()), [5, 6], &axes::plain)?;
     for ends in zero_line(panel) {
         chart.draw_series(LineSeries::new(ends, BLACK.stroke_width(1)))?;
     }

@@ -19,38 +19,19 @@ use crate::model::Limits;
 /// Share of the acceleration and jerk limits reserved for braking [-].
 const BRAKING: f64 = 0.8;
 
-/// The scale s of the feedback that lets every joint stop at its goal: `displacements` and
+/// The scale s of the feedback that lets every joint stop at its goal: `ways` that are left and
 /// `velocities` in scaled coordinates, `columns` the scales.
 pub(super) fn scale(
-    displacements: &[f64],
+    ways: impl IntoIterator<Item = f64>,
     velocities: &[f64],
     columns: &[f64],
     limits: &[Limits],
     dt: f64,
 ) -> f64 {
-    let mut share = 1.0_f64;
-    for (((way, rate), scale), limit) in
-        displacements.iter().zip(velocities).zip(columns).zip(limits)
-    {
-        share = share.min(share_of((way * scale).abs(), (rate * scale).abs(), limit, dt));
-    }
-    share
-}
-
-/// The same for displacements that are `time` times the velocities.
-pub(super) fn scale_for(
-    time: f64,
-    velocities: &[f64],
-    columns: &[f64],
-    limits: &[Limits],
-    dt: f64,
-) -> f64 {
-    let mut share = 1.0_f64;
-    for ((rate, scale), limit) in velocities.iter().zip(columns).zip(limits) {
-        let rate = (rate * scale).abs();
-        share = share.min(share_of(time * rate, rate, limit, dt));
-    }
-    share
+    let joints = ways.into_iter().zip(velocities).zip(columns).zip(limits);
+    joints.fold(1.0, |share, (((way, rate), scale), limit)| {
+        f64::min(share, share_of((way * scale).abs(), (rate * scale).abs(), limit, dt))
+    })
 }
 
 /// The share of a velocity from which a joint stops within `way`.

@@ -8,8 +8,8 @@
 //! Shapes   task m <= 6 components, n joints that move the end effector; velocities of all joints
 //! Units    m, rad, s
 //! Loops    closed chains are constrained by `coupled.rs`: the unknowns are the actuated motions
-//! Valid    gain * dt < 2; any rank. No allocation, at most 4 n + 1 decompositions per step; closed
-//!          chains allocate
+//! Valid    gain * dt < 2; any rank. No allocation, at most 4 n + 1 decompositions per step, and three of
+//!          n x n for a target beyond reach; closed chains allocate
 //! Fails    on non-finite input, and when the twist or the joint velocities overflow; on error the
 //!          servo's state is unchanged
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
@@ -89,7 +89,7 @@ pub struct Servo {
     last: Vec<f64>,
     /// Derivatives of the Jacobian; trees only.
     hessian: Vec<Matrix>,
-    /// To targets beyond reach; trees only.
+    /// To targets beyond reach; trees of joints with one coordinate only.
     nearest_pose: Option<Box<NearestPose>>,
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
@@ -201,9 +201,7 @@ impl Servo {
             saturator: Saturator::new(m, unknowns, coupled.is_some().then_some(rates)),
             hessian,
             last: vec![0.0; rates],
-            nearest_pose: coupled
-                .is_none()
-                .then(|| Box::new(NearestPose::new(&chain, mechanism.n(), m))),
+            nearest_pose: None,
             rates: vec![0.0; mechanism.n().max(rates)],
             accelerations: vec![0.0; mechanism.n().max(rates)],
             configuration: mechanism.home().to_vec(),
@@ -227,6 +225,9 @@ impl Servo {
         servo.generic_rank = if servo.coupled.is_some() {
             servo.find_actuated_rank()?
         } else {
+            let length = servo.options.length;
+            let nearest_pose = NearestPose::new(mechanism, &servo.chain, m, length);
+            servo.nearest_pose = nearest_pose.map(Box::new);
             servo.find_generic_rank()
         };
         Ok(servo)

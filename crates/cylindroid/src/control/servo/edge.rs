@@ -4,15 +4,20 @@
 //! Formula  C_ij = -sum_k e_k r_k (dJ_kj/dq_i + dJ_ki/dq_j) / 2 c_i c_j, with the scales r of rows and
 //!          c of columns (`task_space.rs`); in the axes of the tool, with which the error turns, also
 //!          J_i . r^2 (w_j x e), w_j the angular columns of J, symmetrised as well
+//!          The share of velocities y' from which all joints stop at the nearest pose, w away
+//!          (`nearest_pose.rs`), is that of ways t y' (`approach.rs`): t the least of |w+ / a| / |y' / a|,
+//!          w+ the parts of w in the directions of y', a the acceleration limits, and of (g w) / (g y'),
+//!          g = J^T x, which does not see self-motions
 //! Shapes   n x n
-//! Valid    trees
+//! Valid    trees. One time for all joints: a joint whose way changes its sign does not hold up the
+//!          others
 //! Checked  tests/it/servo/edge.rs
 
 use super::approach;
 use super::task_space::TaskSpace;
 use crate::control::solver::saturation::Curvature;
 use crate::kinematics::{Chain, ReferenceFrame};
-use crate::linalg::{Matrix, dot, norm};
+use crate::linalg::{Matrix, dot};
 use crate::model::Limits;
 use crate::spatial::Vec3;
 
@@ -53,25 +58,35 @@ impl Curvature for Edge<'_> {
     }
 
     fn share(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {
-        let columns = &self.space.columns;
-        let Some(known) = self.way else {
-            return approach::scale(way, rates, columns, self.limits, self.dt);
-        };
-        // The time at these velocities until the known pose is reached: of the joints on their way to
-        // it, and of the task, which does not see self-motions.
-        let ahead = known.iter().zip(rates).filter(|(way, rate)| *way * *rate > 0.0);
-        let ahead = ahead.map(|(way, _)| way * way).sum::<f64>().sqrt();
-        let (along, all) = (dot(gradient, known), dot(gradient, rates));
-        let of_task = if along > 0.0 && all > 0.0 { along / all } else { f64::INFINITY };
-        let time = of_task.min(ahead / norm(rates));
-        if !(time > 0.0 && time < f64::INFINITY) {
-            return approach::scale(way, rates, columns, self.limits, self.dt);
+        let (columns, limits, dt) = (&self.space.columns, self.limits, self.dt);
+        match self.way.and_then(|known| self.time(known, rates, gradient)) {
+            Some(time) => {
+                approach::scale(rates.iter().map(|r| time * r), rates, columns, limits, dt)
+            }
+            None => approach::scale(way.iter().copied(), rates, columns, limits, dt),
         }
-        approach::scale_for(time, rates, columns, self.limits, self.dt)
     }
 }
 
 impl Edge<'_> {
+    /// The time t at these velocities until the nearest pose, where one of its ways leads on.
+    fn time(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> Option<f64> {
+        let (mut ahead, mut all) = (0.0, 0.0);
+        for (((way, rate), column), limits) in
+            way.iter().zip(rates).zip(&self.space.columns).zip(self.limits)
+        {
+            // A joint that stops at once has no share.
+            let weight = if *column == 0.0 { 0.0 } else { column / limits.acceleration };
+            let (way, rate) = (weight * way, weight * rate);
+            ahead += if way * rate > 0.0 { way * way } else { 0.0 };
+            all += rate * rate;
+        }
+        let (along, of_all) = (dot(gradient, way), dot(gradient, rates));
+        let of_task = if along > 0.0 && of_all > 0.0 { along / of_all } else { f64::INFINITY };
+        let time = of_task.min((ahead / all).sqrt());
+        (time > 0.0 && time < f64::INFINITY).then_some(time)
+    }
+
     /// Adds the change of an error in axes that turn with the tool.
     fn add_turn(&mut self, left: &[f64], out: &mut Matrix) {
         let Some(jacobian) = self.hessian.first_mut() else { return };

@@ -5,7 +5,8 @@
 //!          servo, from the result of the last one
 //! Shapes   J: m x n, e: m
 //! Units    scaled as in `task_space.rs`
-//! Valid    trees; a local minimum of |e|, that to which the present configuration descends
+//! Valid    trees of joints with one coordinate; a local minimum of |e|, that to which the present
+//!          configuration descends
 //! Why so   the curvature at the present configuration gives the way that is left only near its end.
 //!          Joints with small acceleration limits must brake from far away
 //! Checked  tests/it/servo/edge.rs
@@ -14,21 +15,21 @@ use super::edge::Edge;
 use super::task_space::TaskSpace;
 use crate::control::solver::saturation::{Curvature, NewtonStep};
 use crate::kinematics::Chain;
-use crate::linalg::{Matrix, dot, norm};
-use crate::model::Limits;
+use crate::linalg::{Matrix, dot};
+use crate::model::{Limits, Mechanism};
 use crate::scalar::clamp;
 use crate::spatial::Pose;
 use crate::task::Task;
 
 /// Newton steps in a step of the servo.
 const STEPS: usize = 3;
-/// Largest change of a joint in one of them (scaled) [rad, or lengths].
+/// Largest change of a joint in one of them [rad, or characteristic lengths].
 const LONGEST: f64 = 0.4;
 /// Halvings of a step.
 const HALVINGS: usize = 6;
 /// A step below this share of the way that is left has arrived [-].
 const ARRIVED: f64 = 0.02;
-/// A way below this is the end of the motion (scaled) [rad, or lengths].
+/// A step below this has arrived as well [rad, or characteristic lengths].
 const SHORT: f64 = 1e-6;
 
 /// The task, its limits, and memory of the servo.
@@ -43,7 +44,9 @@ pub(super) struct Surroundings<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct NearestPose {
     chain: Chain,
-    /// All coordinates; empty before the first step.
+    /// Unit of the steps of each coordinate of the chain: 1 for angles, the characteristic length.
+    sizes: Vec<f64>,
+    /// All coordinates.
     q: Vec<f64>,
     start: Vec<f64>,
     is_known: bool,
@@ -56,19 +59,24 @@ pub(super) struct NearestPose {
 }
 
 impl NearestPose {
-    pub(super) fn new(chain: &Chain, coordinates: usize, m: usize) -> Self {
+    /// For a task of m components and this characteristic length; `None` where joints have several
+    /// coordinates.
+    pub(super) fn new(mechanism: &Mechanism, chain: &Chain, m: usize, length: f64) -> Option<Self> {
         let n = chain.n();
-        Self {
+        let all = mechanism.coordinates();
+        let size = |&c: &usize| if all[c].kind.is_length() { length } else { 1.0 };
+        chain.turns_and_slides().then(|| Self {
+            sizes: chain.coordinates().iter().map(size).collect(),
             chain: chain.clone(),
-            q: vec![0.0; coordinates],
-            start: vec![0.0; coordinates],
+            q: vec![0.0; all.len()],
+            start: vec![0.0; all.len()],
             is_known: false,
             jacobian: Matrix::zeros(m, n),
             error: vec![0.0; m],
             newton: NewtonStep::new(m, n),
             step: vec![0.0; n],
             way: vec![0.0; n],
-        }
+        })
     }
 
     /// Forgets the last result.
@@ -99,10 +107,13 @@ impl NearestPose {
             }
             moved = self.advance(target, &mut far, around);
         }
+        let mut left = 0.0_f64;
         for (i, (way, &c)) in self.way.iter_mut().zip(self.chain.coordinates()).enumerate() {
-            *way = around.space.scaled_rate(i, self.q[c] - q[c]);
+            let change = self.q[c] - q[c];
+            left = left.max(change.abs() / self.sizes[i]);
+            *way = around.space.scaled_rate(i, change);
         }
-        (moved <= SHORT.max(ARRIVED * norm(&self.way))).then_some(&self.way)
+        (moved <= SHORT.max(ARRIVED * left)).then_some(&self.way)
     }
 
     /// One step; the largest change of a joint.
@@ -129,15 +140,19 @@ impl NearestPose {
                 }
             }
         }
-        self.newton.decompose(&self.jacobian, [&self.error, &self.error]);
+        self.newton.decompose(&self.jacobian, &[&self.error]);
         self.newton.solution_into(0, &mut self.step);
-        let most = self.step.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let moves = self.step.iter_mut().zip(&around.space.columns).zip(&self.sizes);
+        let most = moves.fold(0.0_f64, |most, ((x, column), size)| {
+            *x *= column;
+            most.max(x.abs() / size)
+        });
         let mut share = if most > LONGEST { LONGEST / most } else { 1.0 };
         self.start.copy_from_slice(&self.q);
         for _ in 0..HALVINGS {
-            let moves = self.step.iter().zip(&around.space.columns).zip(around.limits);
-            for (((x, column), limits), &c) in moves.zip(self.chain.coordinates()) {
-                self.q[c] = clamp(self.start[c] + share * x * column, limits.lower, limits.upper);
+            let moves = self.step.iter().zip(around.limits).zip(self.chain.coordinates());
+            for ((x, limits), &c) in moves {
+                self.q[c] = clamp(self.start[c] + share * x, limits.lower, limits.upper);
             }
             let then = self.load(target, around);
             if then <= *far {

@@ -2,7 +2,8 @@
 
 use cylindroid::control::{Stall, Status};
 use cylindroid::inverse::Method;
-use cylindroid::{Mechanism, Servo, ServoOptions, Vec3, catalogue};
+use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::{Mechanism, Pose, Rotation, Servo, ServoOptions, Vec3, catalogue};
 
 /// A motion to the edge of reach.
 #[derive(Debug)]
@@ -88,4 +89,106 @@ fn all_inverses_come_to_rest_at_the_edge() {
             assert!(motion.back < 1e-3 && motion.time < 20.0, "{case}");
         }
     }
+}
+
+/// An arm of four hinges on a slide, with weak drives; `size` new units of length in an old one.
+fn arm_on_a_slide(world: Pose, size: f64) -> Mechanism {
+    let mut builder = Mechanism::builder("arm on a slide");
+    let weak = Limits { lower: -2.5, upper: 2.5, velocity: 2.0, acceleration: 1.0, ..Limits::NONE };
+    let mut add = |name: &str, parent: &str, axis: Vec3, at: Pose| {
+        let slides = name == "slide";
+        let kind = if slides { JointKind::Prismatic } else { JointKind::Revolute };
+        let unit = if slides { size } else { 1.0 };
+        builder.joint(JointSpec {
+            axis,
+            parent_from_joint: at,
+            limits: Limits {
+                lower: weak.lower * 0.2 * unit,
+                upper: weak.upper * 0.2 * unit,
+                velocity: weak.velocity * unit,
+                acceleration: weak.acceleration * unit,
+                ..weak
+            },
+            ..JointSpec::new(name, kind, parent, &format!("{name}_link"))
+        });
+    };
+    let ahead = |x: f64| Pose::from_translation(Vec3::X * (x * size));
+    let lowered = world * Pose::from_translation(Vec3::new(0.1, -0.2, 0.3) * size);
+    add("slide", "base", Vec3::Y, lowered);
+    add("shoulder", "slide_link", Vec3::Z, ahead(0.2));
+    add("elbow", "shoulder_link", Vec3::Z, ahead(0.4));
+    add("lift", "elbow_link", Vec3::Y, ahead(0.3));
+    add("wrist", "lift_link", Vec3::X, ahead(0.2));
+    builder.frame("tool", "wrist_link", ahead(0.1));
+    builder.tool("tool");
+    builder.build().unwrap()
+}
+
+/// The way to the edge, step by step, in angles and old units of length.
+fn way_to_the_edge(world: Pose, size: f64) -> Vec<Vec<f64>> {
+    let robot = arm_on_a_slide(world, size);
+    let mut options = ServoOptions { dt: 1e-2, ..ServoOptions::new(&robot) };
+    options.tolerance.position *= size;
+    // The slide costs as much in every unit.
+    options.joint_weights = vec![1.0 / (size * size), 1.0, 1.0, 1.0, 1.0];
+    let mut servo = Servo::new(&robot, options).unwrap();
+    let mut q = vec![0.1 * size, 0.3, -0.4, 0.2, 0.1];
+    let target = Pose {
+        rotation: world.rotation * Rotation::exp(Vec3::new(0.3, 0.1, 0.4)),
+        translation: world * (Vec3::new(2.5, 1.0, 1.2) * size),
+    };
+    let mut way = Vec::new();
+    for _ in 0..600 {
+        servo.step(&q, target).unwrap();
+        servo.advance(&mut q);
+        way.push(std::iter::once(q[0] / size).chain(q[1..].iter().copied()).collect());
+    }
+    assert!(matches!(servo.stall(), Stall::OutOfReach { .. }), "{:?}", servo.stall());
+    way
+}
+
+#[test]
+fn the_way_to_the_edge_depends_on_no_frame_and_no_unit() {
+    let own = way_to_the_edge(Pose::IDENTITY, 1.0);
+    let moves = own[0].iter().zip(own.last().unwrap()).map(|(a, b)| (a - b).abs());
+    assert!(moves.fold(0.0, f64::max) > 0.2, "it hardly moves");
+    let elsewhere = Pose {
+        rotation: Rotation::exp(Vec3::new(0.4, -1.1, 0.7)),
+        translation: Vec3::new(3.0, -2.0, 0.5),
+    };
+    for (world, size) in [(elsewhere, 1.0), (Pose::IDENTITY, 1e-3), (elsewhere, 40.0)] {
+        let other = way_to_the_edge(world, size);
+        for (step, (a, b)) in own.iter().zip(&other).enumerate() {
+            let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-8, "step {step} at {size}: {apart:e}");
+        }
+    }
+}
+
+/// A wrist with a spherical joint, which has no way in coordinates, comes to rest too.
+#[test]
+fn arms_with_balls_come_to_rest_at_the_edge() {
+    let mut builder = Mechanism::builder("arm with a ball");
+    let limits = Limits { velocity: 2.0, acceleration: 5.0, ..Limits::NONE };
+    for (name, kind, parent, x) in [
+        ("pan", JointKind::Revolute, "base", 0.0),
+        ("lift", JointKind::Revolute, "pan_link", 0.1),
+        ("elbow", JointKind::Revolute, "lift_link", 0.4),
+        ("ball", JointKind::Spherical, "elbow_link", 0.4),
+    ] {
+        builder.joint(JointSpec {
+            axis: if name == "pan" { Vec3::Z } else { Vec3::Y },
+            parent_from_joint: Pose::from_translation(Vec3::X * x),
+            limits,
+            ..JointSpec::new(name, kind, parent, &format!("{name}_link"))
+        });
+    }
+    builder.frame("tool", "ball_link", Pose::from_translation(Vec3::X * 0.1));
+    builder.tool("tool");
+    builder.home(&[0.2, -0.5, 1.0, 0.1, 0.2, -0.1]);
+    let robot = builder.build().unwrap();
+    let options = ServoOptions { dt: 1e-2, ..ServoOptions::new(&robot) };
+    let motion = to_the_edge_with(&robot, Vec3::X, options);
+    assert!(matches!(motion.stall, Some(Stall::OutOfReach { .. })), "{motion:?}");
+    assert!(motion.time < 20.0, "{motion:?}");
 }

@@ -56,7 +56,7 @@ impl Servo {
             }
             let dt = self.options.dt;
             let share = approach::scale(
-                &self.secondary,
+                self.secondary.iter().copied(),
                 &self.primary,
                 &self.space.columns,
                 &self.limits,

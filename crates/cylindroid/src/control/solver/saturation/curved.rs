@@ -77,7 +77,7 @@ impl Curved {
         let scale = if size > 0.0 { (1.0 / p.gain).min(error / size) } else { 0.0 };
         self.left.iter_mut().for_each(|x| *x *= scale);
         curvature.load(&self.left, &mut self.newton.curvature);
-        self.newton.decompose(p.j, [&task.target, p.error]);
+        self.newton.decompose(p.j, &[&task.target, p.error]);
         self.newton.solution_into(0, &mut self.rates);
         self.newton.solution_into(1, &mut self.way);
         // Joints that take no part in the task move by rounding only, and have no way.

@@ -33,8 +33,8 @@ impl NewtonStep {
         }
     }
 
-    /// Decomposes the problem of the curvature for these right sides.
-    pub(in crate::control) fn decompose(&mut self, j: &Matrix, right_sides: [&[f64]; 2]) {
+    /// Decomposes the problem of the curvature for these right sides, two at most.
+    pub(in crate::control) fn decompose(&mut self, j: &Matrix, right_sides: &[&[f64]]) {
         let (m, n) = (j.rows(), j.cols());
         // Shifted: then singular values are eigenvalues.
         let shift = self.curvature.frobenius_norm();
@@ -52,7 +52,7 @@ impl NewtonStep {
         for i in 0..n {
             self.stacked.column_mut(i)[..m].copy_from_slice(j.column(i));
         }
-        for (i, b) in right_sides.into_iter().enumerate() {
+        for (i, b) in right_sides.iter().enumerate() {
             self.stacked.column_mut(n + i)[..m].copy_from_slice(b);
         }
         // Regular: C has at least the least damping.
