@@ -141,7 +141,7 @@ function start(): void {
       (error: unknown) => page.toast(`The robot could not be saved: ${String(error)}`, true),
     );
   });
-  const map = new MapPanel(session, stage, page.toast, () => target.isHovered());
+  const map = new MapPanel(session, stage, page.toast, picking);
   const [pose, singular, screws] = [posePanel(), singularPanel(redraw), screwsPanel()];
   const reports = new Reports(session);
   const [mobility, capability] = [mobilityPanel(), capabilityPanel()];

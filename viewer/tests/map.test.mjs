@@ -57,7 +57,7 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
       const { map, stage } = /** @type {any} */ (window).viewer;
       const box = stage.renderer.domElement.getBoundingClientRect();
       const found = new Set();
-      for (let x = 0; x < box.width; x += 6) for (let y = 60; y < box.height; y += 6) found.add(map.cloud.at({ clientX: box.left + x, clientY: box.top + y }));
+      for (let x = 0; x < box.width; x += 6) for (let y = 60; y < box.height; y += 6) found.add(map.cloud.at({ clientX: box.left + x, clientY: box.top + y }, stage.eye.position)?.row ?? null);
       return [...found].filter((row) => row !== null);
     });
     assert.ok(inFront.length > 100);
@@ -74,8 +74,8 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
       for (let x = 40; x < box.width - 40; x += 5) {
         for (let y = 80; y < box.height - 40; y += 5) {
           const far = Math.hypot(x - ((hx + 1) / 2) * box.width, y - ((1 - hy) / 2) * box.height) > 150;
-          const row = far ? map.cloud.at({ clientX: box.left + x, clientY: box.top + y }) : null;
-          if (row !== null) return row;
+          const found = far ? map.cloud.at({ clientX: box.left + x, clientY: box.top + y }, stage.eye.position) : null;
+          if (found) return found.row;
         }
       }
       return -1;
@@ -89,6 +89,8 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
     const now = await state(page);
     assert.ok(apart(now.q, q) < 1e-9);
     assert.ok(apart(now.tool.position, ["x", "y", "z"].map((name) => columns[name]?.[number] ?? NaN)) < 1e-9);
+    // Nothing behind the point is selected.
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.selection.selected ?? null), null);
     await picture(page, "map-clicked");
     await panel.getByRole("button", { name: "Remove" }).click();
     await panel.waitFor({ state: "hidden" });

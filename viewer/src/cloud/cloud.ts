@@ -1,11 +1,10 @@
 /** The points of a table in the view: coloured, cut by a plane, and clicked. */
 import { Box3, BufferAttribute, BufferGeometry, Group, Plane, Points, PointsMaterial, Vector2, Vector3 } from "three";
+import type { Picking } from "../scene/picking";
 import type { Stage } from "../scene/stage";
 import { coloursOf } from "./colours";
 import type { Table } from "./table";
 
-/** A pointer that moved farther between down and up has dragged (pixels). */
-const CLICK = 4;
 /** Farthest from the pointer that a point is clicked (pixels). */
 const NEAR = 8;
 
@@ -18,18 +17,12 @@ export class Cloud {
   private readonly plane = new Plane(new Vector3(-1, 0, 0), 0);
   private isCut = false;
 
-  /** `picked` is called with the row of a point that was clicked; `isHandle` is true where something else is below the pointer. */
-  constructor(private readonly stage: Stage, picked: (row: number) => void, isHandle: () => boolean) {
+  /** `picked` is called with the row of a point that was clicked. */
+  constructor(private readonly stage: Stage, picked: (row: number) => void, picking: Picking) {
     stage.renderer.localClippingEnabled = true;
-    const canvas = stage.renderer.domElement;
-    let down: [number, number] | null = null;
-    canvas.addEventListener("pointerdown", (event) => {
-      down = event.button === 0 && !isHandle() ? [event.clientX, event.clientY] : null;
-    });
-    canvas.addEventListener("pointerup", (event) => {
-      const row = down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < CLICK ? this.at(event) : null;
-      down = null;
-      if (row !== null) picked(row);
+    picking.addSource((ray, event) => {
+      const found = this.at(event, ray.ray.origin);
+      return found && { distance: found.distance, pick: () => picked(found.row) };
     });
   }
 
@@ -85,22 +78,23 @@ export class Cloud {
     return box;
   }
 
-  /** Of the points near the pointer the one in front. */
-  private at(event: PointerEvent): number | null {
+  /** Of the points near the pointer the one in front, and its distance from the eye. */
+  private at(event: PointerEvent, eye: Vector3): { row: number; distance: number } | null {
     const places = this.points?.geometry.getAttribute("position");
     if (!places) return null;
     const rectangle = this.stage.renderer.domElement.getBoundingClientRect();
     const pointer = new Vector2(event.clientX - rectangle.left, event.clientY - rectangle.top);
     const place = new Vector3();
-    let found: { row: number; depth: number } | null = null;
+    let found: { row: number; distance: number } | null = null;
     for (let row = 0; row < places.count; row += 1) {
       place.fromBufferAttribute(places, row);
       if (this.isCut && this.plane.distanceToPoint(place) < 0) continue;
+      const distance = place.distanceTo(eye);
       place.project(this.stage.eye);
       const [x, y] = [((place.x + 1) / 2) * rectangle.width, ((1 - place.y) / 2) * rectangle.height];
       const isNear = Math.hypot(x - pointer.x, y - pointer.y) < NEAR && Math.abs(place.z) < 1;
-      if (isNear && (found === null || place.z < found.depth)) found = { row, depth: place.z };
+      if (isNear && (found === null || distance < found.distance)) found = { row, distance };
     }
-    return found?.row ?? null;
+    return found;
   }
 }

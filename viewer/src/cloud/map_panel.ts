@@ -4,6 +4,7 @@ import { h, text } from "../dom";
 import { count, fixed, short } from "../format";
 import { panel } from "../panels/panel";
 import type { Scene } from "../protocol";
+import type { Picking } from "../scene/picking";
 import type { Stage } from "../scene/stage";
 import type { Session } from "../session";
 import { Cloud, type Axis } from "./cloud";
@@ -30,8 +31,8 @@ export class MapPanel {
   private table: Table | null = null;
   private cutAxis: Axis | null = null;
 
-  constructor(private readonly session: Session, stage: Stage, private readonly say: (words: string, bad?: boolean) => void, isHandle: () => boolean) {
-    this.cloud = new Cloud(stage, (row) => this.pick(row), isHandle);
+  constructor(private readonly session: Session, stage: Stage, private readonly say: (words: string, bad?: boolean) => void, picking: Picking) {
+    this.cloud = new Cloud(stage, (row) => this.pick(row), picking);
     this.size.addEventListener("input", () => {
       fillSlider(this.size);
       this.cloud.resize(this.size.valueAsNumber);

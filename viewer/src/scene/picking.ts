@@ -1,11 +1,13 @@
-/** Clicks in the view: the nearest body under the pointer. A drag is none, and neither is a press on the handle. */
+/** Clicks in the view: the nearest body or point under the pointer. A drag is none, and neither is a press on the handle. */
 import { Raycaster, Vector2, type Object3D } from "three";
 import type { Stage } from "./stage";
 
 /** A pointer that moved farther between down and up has dragged (pixels). */
 const CLICK = 4;
 
-type Source = { group: Object3D; picked: (object: Object3D) => void };
+type Hit = { distance: number; pick: () => void };
+/** What a click on the ray, at this event, would pick. */
+type Source = (ray: Raycaster, event: PointerEvent) => Hit | null;
 
 export class Picking {
   private readonly sources: Source[] = [];
@@ -26,7 +28,15 @@ export class Picking {
 
   /** Bodies that can be picked. */
   add(group: Object3D, picked: (object: Object3D) => void): void {
-    this.sources.push({ group, picked });
+    this.addSource((ray) => {
+      const hit = ray.intersectObject(group, true).find(({ object }) => isShown(object));
+      return hit ? { distance: hit.distance, pick: () => picked(hit.object) } : null;
+    });
+  }
+
+  /** Other things that can be picked. */
+  addSource(source: Source): void {
+    this.sources.push(source);
   }
 
   /** Called for a click beside all bodies. */
@@ -39,12 +49,9 @@ export class Picking {
     const at = new Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     const ray = new Raycaster();
     ray.setFromCamera(at, this.stage.eye);
-    const hits = this.sources.flatMap(({ group, picked }) => {
-      const hit = ray.intersectObject(group, true).find(({ object }) => isShown(object));
-      return hit ? [{ ...hit, picked }] : [];
-    });
+    const hits = this.sources.flatMap((source) => source(ray, event) ?? []);
     const [nearest] = hits.sort((a, b) => a.distance - b.distance);
-    if (nearest) nearest.picked(nearest.object);
+    if (nearest) nearest.pick();
     else this.nothing();
   }
 }
