@@ -29,7 +29,7 @@ pub(crate) fn task(seconds: Option<&str>) -> Result<()> {
 }
 
 /// The loop with the binary of the tests: ten seconds.
-fn test() -> Result<()> {
+pub(crate) fn test() -> Result<()> {
     if !cfg!(target_os = "linux") {
         println!("skipped: network namespaces are of Linux");
         return Ok(());

@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 
 use crate::shell::{cargo, documentation, root, run};
-use crate::{book, deny, layers, models, python, python_names, small_sizes, viewer};
+use crate::{book, deny, layers, models, python, python_names, ros2, small_sizes, viewer};
 
 fn step(name: &str, work: impl FnOnce() -> Result<()>) -> Result<()> {
     println!("== {name}");
@@ -53,6 +53,7 @@ pub(crate) fn test() -> Result<()> {
         run(cargo(&["test", "--quiet", "--workspace"]).env("CYLINDROID_TEST_ROBOTS", &robots))
     })?;
     step("forms of the kernels", || in_all_forms(&robots, &OF_KERNELS))?;
+    step("ROS 2 over DDS", ros2::test)?;
     step("viewer in a browser", viewer::test)?;
     step("Python package", python::test)
 }
