@@ -204,8 +204,9 @@ impl Cycle {
             self.last_status = text;
         }
         if now >= self.next_diagnostics {
+            let since = now - (self.next_diagnostics - DIAGNOSTICS);
             let figures = [
-                ("rate [Hz]", f64::from(self.cycles) / DIAGNOSTICS),
+                ("rate [Hz]", f64::from(self.cycles) / since),
                 ("longest_cycle [s]", self.longest),
                 ("late_cycles", f64::from(self.late)),
                 ("lost_commands", self.topics.lost as f64),
