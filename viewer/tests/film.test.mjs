@@ -176,6 +176,6 @@ test("pictures at even times are a zip of numbered PNG", () =>
     // The session has not moved, and a rate that cannot be is refused.
     assert.ok(apart((await state(page)).q, before.q) < 1e-4);
     await enter(page.getByLabel("Frames per second"), 0);
-    await page.getByRole("button", { name: "Save pictures" }).click();
+    await page.getByRole("button", { name: "Save frames as a zip of numbered PNG" }).click();
     await page.getByText("Frames per second are a number from 1 to 120.").waitFor();
   }));
