@@ -93,7 +93,8 @@ test("a recording is one HTML file that plays from its file, without a server", 
       await film.locator(".legend").getByText("Velocity ellipsoid").waitFor();
       await film.locator('[data-plot="joints"] canvas').waitFor();
       await picture(film, "film");
-      // Played: from the beginning to the end, in about its time.
+      // Played from the beginning, slowly: it does not end before it is paused.
+      await film.getByLabel("Speed of playing back").selectOption({ index: 0 });
       await film.getByRole("button", { name: "Play back" }).click();
       await film.waitForFunction((seq) => /** @type {any} */ (window).film.state().seq > seq, states[3].seq);
       await film.getByRole("button", { name: "Pause playback" }).click();
