@@ -9,7 +9,7 @@
 //! Why so   pairs of convex shapes, not of links: a link of two parts can be near with both, and the
 //!          gradient of either is continuous where that of the smaller distance jumps. No memory is
 //!          allocated once the output and the scratch memory of penetrations have their size
-//! Checked  tests/collision/laws.rs, tests/collision/gradient.rs, tests/allocation.rs
+//! Checked  tests/collision/laws.rs, tests/collision/gradient.rs, tests/allocation/main.rs
 
 use super::body::{self, Body};
 use super::convex::{Convex, Core};

@@ -1,6 +1,6 @@
 //! Bodies at their poses in the world, and the distances of pairs of them.
 //!
-//! Checked  tests/collision/laws.rs, tests/allocation.rs
+//! Checked  tests/collision/laws.rs, tests/allocation/main.rs
 
 use super::body::Body;
 use super::convex::Placed;

@@ -3,7 +3,7 @@
 //! It holds only what a control loop needs of a mechanism: an arm of a humanoid costs as much as an
 //! arm alone. Nothing here allocates after construction.
 //!
-//! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/allocation.rs
+//! Checked  tests/it/batch.rs::chains_agree_with_trees, tests/allocation/main.rs
 
 use super::forward::forward;
 use super::jacobian::{ReferenceFrame, Tip};

@@ -10,7 +10,7 @@
 //! Why so   a [`ScrewSystem`] also computes class, frame and principal screws, and allocates; its
 //!          rank is that of singular values, here it is that of the pivots, which are nowhere
 //!          smaller
-//! Checked  tests/it/servo/hybrid.rs::projectors_of_twists, tests/allocation.rs
+//! Checked  tests/it/servo/hybrid.rs::projectors_of_twists, tests/allocation/main.rs
 
 use super::existence::NoInverse;
 use super::projector::{Projector, coordinates, oblique_coordinates};

@@ -5,7 +5,7 @@
 //! Shapes   P: 6 x 6 on [v / L; w]
 //! Units    none; pitches in units of L
 //! Valid    no allocation
-//! Checked  tests/it/servo/projection.rs, tests/allocation.rs
+//! Checked  tests/it/servo/projection.rs, tests/allocation/main.rs
 
 use super::existence::NoInverse;
 use super::projector::{coordinates, oblique_coordinates};

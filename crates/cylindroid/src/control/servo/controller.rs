@@ -13,7 +13,7 @@
 //! Fails    on non-finite input, and when the twist or the joint velocities overflow; on error the
 //!          servo's state is unchanged
 //! Source   course notes on Cartesian control, 7.1 to 7.5; limits: see the two files
-//! Checked  tests/it/servo/, tests/allocation.rs
+//! Checked  tests/it/servo/, tests/allocation/main.rs
 
 mod behind_plant;
 pub(super) mod condition;
@@ -421,7 +421,7 @@ impl Servo {
             predictor.reset();
         }
         if let Some(escape) = &mut self.escape {
-            escape.reset();
+            escape.progress.reset();
         }
         if let Some(nearest_pose) = &mut self.nearest_pose {
             nearest_pose.reset();

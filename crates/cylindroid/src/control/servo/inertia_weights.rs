@@ -9,7 +9,7 @@
 //! Why so   of joint velocities with the same twist those of least sum of M_ii qd_i^2: energy
 //!          without the coupling of joints; allocates nothing
 //! Source   Khatib 1987 for inertia as the weight of redundancy
-//! Checked  tests/it/servo/inertia.rs, tests/allocation.rs
+//! Checked  tests/it/servo/inertia.rs, tests/allocation/main.rs
 
 use super::coupled::Coupled;
 use super::task_space::TaskSpace;

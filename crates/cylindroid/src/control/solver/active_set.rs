@@ -68,6 +68,25 @@ impl Precision {
     pub(in crate::control) const EXACT: Self = Self { rank: 1e-11, release: 1e-11 };
 }
 
+/// Weak directions of a level.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::control) struct Weak {
+    /// Singular values below this share of the norm of the rows are those of weak directions, and below
+    /// the other one of none [-].
+    pub(in crate::control) below: f64,
+    pub(in crate::control) none: f64,
+    /// Damping for each unit of the error, and at least [-].
+    pub(in crate::control) curvature: f64,
+    pub(in crate::control) least: f64,
+}
+
+impl Weak {
+    /// The damping for an error of this size.
+    pub(in crate::control) fn damping(&self, error: f64) -> f64 {
+        (self.curvature * error).max(self.least)
+    }
+}
+
 /// The objective of a level.
 #[derive(Debug)]
 pub(in crate::control) enum Objective<'a> {

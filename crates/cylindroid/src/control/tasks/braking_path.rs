@@ -10,7 +10,7 @@
 //! Cost     a sum over the joints while all pairs are further apart than they move; otherwise at
 //!          most `LOOKS` configurations. No allocation
 //! Source   Fraichard & Asama, Inevitable collision states, Advanced Robotics 18 (2004), 1001-1024
-//! Checked  tests/it/servo/braking_path.rs, tests/allocation.rs
+//! Checked  tests/it/servo/braking_path.rs, tests/allocation/main.rs
 
 use super::options::{CollisionAvoidance, MOST_PAIRS};
 use crate::collision::{CollisionModel, NearPair};

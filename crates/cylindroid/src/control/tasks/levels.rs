@@ -8,7 +8,10 @@ use std::ops::Range;
 use super::options::StoppedBy;
 use crate::control::solver::active_set::Level;
 use crate::control::solver::hierarchy::ScaledLevel;
-use crate::linalg::Matrix;
+use crate::linalg::{Basis, Matrix};
+
+/// Gain that makes an error of the velocity of a task that has none [1/s].
+pub(super) const USUAL_GAIN: f64 = 5.0;
 
 /// A level of the stack.
 #[derive(Debug, Clone)]
@@ -28,15 +31,33 @@ pub(super) struct Member {
     pub(super) task: usize,
     pub(super) rows: Range<usize>,
     pub(super) direction_changed: bool,
-    /// Norm of its scaled error.
+    /// True if the linearised task goes beyond its range.
+    pub(super) is_curved: bool,
+    /// Norm of its scaled error, and of its velocity divided by its gain.
     pub(super) error: f64,
+    pub(super) way: f64,
     pub(super) scale: f64,
     pub(super) stopped_by: Option<StoppedBy>,
+    /// Workspace: of the space of its rows, and one of them.
+    pub(super) basis: Basis,
+    pub(super) row: Vec<f64>,
 }
 
 impl Member {
-    pub(super) fn new(task: usize, rows: Range<usize>) -> Self {
-        Self { task, rows, direction_changed: false, error: 0.0, scale: 1.0, stopped_by: None }
+    /// Of a task in n unknowns.
+    pub(super) fn new(task: usize, rows: Range<usize>, n: usize) -> Self {
+        Self {
+            task,
+            rows,
+            direction_changed: false,
+            is_curved: false,
+            error: 0.0,
+            way: 0.0,
+            scale: 1.0,
+            stopped_by: None,
+            basis: Basis::workspace(n),
+            row: vec![0.0; n],
+        }
     }
 }
 
@@ -53,13 +74,17 @@ pub(super) struct TaskRows {
 }
 
 impl TaskRows {
+    /// Scale of a row: 1 / length of those that are lengths [1/m], 1 of angles.
+    pub(super) fn unit(&self, row: usize, length: f64) -> f64 {
+        if self.is_length[row] { 1.0 / length } else { 1.0 }
+    }
+
     /// The rate at which these joint velocities reduce the error, its lengths divided by `length`
     /// [1/s]; without an error or rows infinite.
     pub(super) fn progress(&self, rates: &[f64], length: f64) -> f64 {
         let (mut reduced, mut square) = (0.0, 0.0);
         for (i, error) in self.error.iter().enumerate() {
-            let unit = if self.is_length[i] { 1.0 / length } else { 1.0 };
-            let scaled = error * unit * unit;
+            let scaled = error * self.unit(i, length).powi(2);
             let velocity: f64 =
                 (0..self.jacobian.cols()).map(|j| self.jacobian[(i, j)] * rates[j]).sum();
             reduced += scaled * velocity;

@@ -3,14 +3,17 @@
 //!
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
 //! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
-//! (the levels, solved with `solver/hierarchy.rs`), `braking` (what must stay possible after a step)
-//! and `simulation`.
+//! (the levels, solved with `solver/hierarchy.rs`), `linear_range` (how far they go), `braking` (what must stay possible after a step),
+//! `escape` and `escaping` (from configurations in which they are lost) and `simulation`.
 
 mod braking;
 mod braking_path;
+mod escape;
+mod escaping;
 mod goals;
 mod gradient;
 mod levels;
+mod linear_range;
 mod motions;
 mod objective;
 mod options;

@@ -20,18 +20,18 @@ const BRAKING: f64 = 0.5;
 const ROUNDING: f64 = 1e-6;
 
 impl TaskServo {
-    /// Solves for the joint velocities. With limits of the jerk twice: for those that the tasks ask for,
+    /// Solves for the joint velocities by `solve`. With limits of the jerk twice: for those that the tasks ask for,
     /// then for those of this step on the way to them.
-    pub(super) fn solve_within_limits(&mut self) {
+    pub(super) fn solve_within_limits(&mut self, solve: fn(&mut Self)) {
         if let Some(mut desired) = self.desired_rates.take() {
             self.load_bounds(None);
-            self.solve();
+            solve(self);
             desired.copy_from_slice(&self.rates);
             self.motions.velocities(&self.last, &self.bounds, &mut desired);
             self.load_bounds(Some(&desired));
             self.desired_rates = Some(desired);
         }
-        self.solve();
+        solve(self);
     }
 
     /// Limits of the joints, and the unknowns of the last velocities; where joints have limits of the

@@ -2,25 +2,29 @@
 //! directions are not to be kept, its direction is changed, on what the others of its level leave.
 //!
 //! Formula  `solver/hierarchy.rs`; directions changed, of all such tasks of a level at once:
-//!          min |A y - b|^2 + d |y|^2, d = k |error| of the task with the largest error, k and its
-//!          least value from `solver/saturation.rs`; for least squares |error| is the part of it
-//!          that limits leave
+//!          min |A y - b|^2 + d |y|^2, d = k |error| of the task with the largest error, k from
+//!          `linear_range.rs` and the least d from `solver/saturation.rs`; for least squares |error| is the
+//!          part of it that limits leave, or all of it beyond the range of the linearised tasks
 //! Valid    a level that higher levels fix in part cannot be scaled as a whole: its direction is
 //!          changed where a limit stops the rest
-//! Checked  tests/it/servo/tasks.rs
+//! Checked  tests/it/servo/tasks.rs, tests/it/servo/task_edges.rs
 
-use super::levels::{Member, Stack};
+use super::levels::{Member, Stack, USUAL_GAIN};
+use super::linear_range::LinearRange;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::solver::active_set::{FEASIBLE, Level, Whole};
+use crate::control::solver::active_set::{FEASIBLE, Level, Weak, Whole};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
-use crate::control::solver::saturation::{CURVATURE, LEAST_DAMPING, MIN_SCALE, STRAIGHT};
+use crate::control::solver::saturation::{LEAST_DAMPING, MIN_SCALE, STRAIGHT};
 use crate::linalg::{dot, norm};
 
 /// Tasks that miss less than this share of their velocity are realised as a whole [-].
 const WHOLE: f64 = 1e-9;
+
+/// Largest weight of the rows of a task beside those of a task that asks for more [-].
+const MOST_WEIGHT: f64 = 1e3;
 
 /// Halvings of the interval of velocities by which distances give way: to a millionth.
 const RELAXATIONS: usize = 20;
@@ -32,7 +36,7 @@ impl TaskServo {
         let mut rounds = 1;
         for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
             member.direction_changed = !self.options.keep_directions;
-            member.stopped_by = None;
+            (member.stopped_by, member.is_curved) = (None, false);
             rounds += 1;
         }
         for round in 0..rounds {
@@ -62,7 +66,7 @@ impl TaskServo {
 
     /// Starts within all inequalities; where limits and distances contradict one another, distances give
     /// way alike, as little as the limits permit. False if limits alone contradict one another.
-    fn start(&mut self) -> bool {
+    pub(super) fn start(&mut self) -> bool {
         if self.set.start(&self.last) {
             return true;
         }
@@ -103,8 +107,10 @@ impl TaskServo {
 
     /// False if tasks were found whose directions must change; in the first round none was yet.
     fn solve_levels(&mut self, is_first: bool) -> bool {
-        let length = self.options.length;
+        let (length, dt) = (self.options.length, self.options.dt);
         for stack in &mut self.stacks {
+            let gains = stack.members.iter().map(|m| self.tasks[m.task].gain);
+            let mut linear = LinearRange::new(gains.fold(0.0, f64::max), dt);
             let Stack { members, level, turned, left_out } = stack;
             let whole = &mut level.whole;
             for member in &mut *members {
@@ -112,7 +118,7 @@ impl TaskServo {
                 let root = task.weight.sqrt();
                 let mut error = 0.0;
                 for r in 0..rows.error.len() {
-                    let scale = root * if rows.is_length[r] { 1.0 / length } else { 1.0 };
+                    let scale = root * rows.unit(r, length);
                     error += (scale * rows.error[r]).powi(2);
                     whole.target[member.rows.start + r] =
                         scale * (task.gain * rows.error[r] + rows.feed_forward[r]);
@@ -122,6 +128,8 @@ impl TaskServo {
                     }
                 }
                 member.error = error.sqrt();
+                let gain = if task.gain > 0.0 { task.gain } else { USUAL_GAIN };
+                member.way = norm(&whole.target[member.rows.clone()]) / gain;
             }
             let is_whole = is_first || members.iter().all(|m| !m.direction_changed);
             let ended = match is_whole {
@@ -133,13 +141,33 @@ impl TaskServo {
             match ended {
                 Whole::Performed => {
                     members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (1.0, None));
+                    if linear.is_left_by(whole, members, self.set.point()) {
+                        return false;
+                    }
                     continue;
                 }
                 Whole::Stopped => {}
                 Whole::Unclear => {
                     let size = norm(&whole.target);
-                    let missing = self.set.reduce_target(whole, self.options.eps);
+                    let weak = Weak {
+                        below: self.options.eps,
+                        none: STRAIGHT.rank,
+                        curvature: linear.curvature,
+                        least: LEAST_DAMPING,
+                    };
+                    let error = |u: &[f64]| {
+                        let part = |m: &Member| (norm(&u[m.rows.clone()]) * m.way).powi(2);
+                        members.iter().map(part).sum::<f64>().sqrt()
+                    };
+                    // What a task leaves out must not disturb one that asks for less.
+                    let farthest = members.iter().map(|m| m.way).fold(0.0, f64::max);
+                    let weights = members.iter().map(|m| {
+                        let weight = (farthest / m.way).min(MOST_WEIGHT);
+                        (m.rows.clone(), if weight.is_nan() { 1.0 } else { weight })
+                    });
+                    let missing = self.set.reduce_target(whole, weak, error, weights);
                     *left_out = if size > 0.0 { missing / size } else { 0.0 };
+                    linear.is_reduced = *left_out > 0.0;
                 }
             }
             let causes = (&self.bounds[..], self.options.half_spaces.len(), &self.near[..]);
@@ -152,7 +180,8 @@ impl TaskServo {
                 let is_stopped = self.set.solve_scaled(level, STRAIGHT, |row, sign| {
                     note(&mut stop, cause((row, sign), causes))
                 });
-                if level.change_directions(members, stop, is_stopped) {
+                let y = self.set.point();
+                if level.change_directions(members, (stop, is_stopped), y, linear) {
                     return false;
                 }
             }
@@ -160,7 +189,8 @@ impl TaskServo {
             let Some(error) = errors.reduce(f64::max) else { continue };
             // The others share by their weights what is left: none of them comes first.
             load_turned(turned, members, &level.whole);
-            let out_of_reach = if self.options.keep_directions {
+            let is_curved = members.iter().any(|m| m.is_curved);
+            let out_of_reach = if self.options.keep_directions || is_curved {
                 error
             } else {
                 // Only what limits leave of it.
@@ -168,7 +198,7 @@ impl TaskServo {
                 let left = self.set.least_residual(turned, STRAIGHT);
                 if size > 0.0 { error * (left / size) } else { 0.0 }
             };
-            let damping = (CURVATURE * out_of_reach).max(LEAST_DAMPING);
+            let damping = (linear.curvature * out_of_reach).max(LEAST_DAMPING);
             self.stops.clear();
             self.set.solve_damped(turned, damping, STRAIGHT, |row| self.stops.push(row));
             turned.left(self.set.point());
@@ -183,7 +213,11 @@ impl TaskServo {
                 member.stopped_by = stop.or(member.stopped_by);
             }
             if !self.options.keep_directions {
-                let left = turned.left(self.set.point());
+                let y = self.set.point();
+                if !is_curved && linear.is_left_by(&level.whole, members, y) {
+                    return false;
+                }
+                let left = turned.left(y);
                 for member in &mut *members {
                     let rows = member.rows.clone();
                     member.scale = share(&level.whole.target[rows.clone()], &left[rows]);
@@ -219,8 +253,9 @@ impl ScaledLevel {
     fn change_directions(
         &self,
         members: &mut [Member],
-        stop: Option<StoppedBy>,
-        is_stopped: bool,
+        (stop, is_stopped): (Option<StoppedBy>, bool),
+        y: &[f64],
+        linear: LinearRange,
     ) -> bool {
         let mut changed = false;
         for (k, member) in members.iter_mut().enumerate().filter(|(_, m)| !m.direction_changed) {
@@ -228,7 +263,8 @@ impl ScaledLevel {
             let is_whole = member.scale >= 1.0 - WHOLE;
             member.stopped_by = if is_whole && self.are_straight[k] { None } else { stop };
             let large = member.scale >= MIN_SCALE || (member.scale > 0.0 && !is_stopped);
-            if !(self.are_straight[k] && large) {
+            member.is_curved |= large && !linear.holds(&self.whole, member, y);
+            if !(self.are_straight[k] && large) || member.is_curved {
                 (member.direction_changed, member.scale) = (true, 0.0);
                 changed = true;
             }

@@ -15,9 +15,10 @@
 //! Fails    on non-finite input. Where limits and distances contradict one another, distances give way as
 //!          little as possible; where limits do (closed chains), all joints brake
 //! Source   Escande, Mansard & Wieber 2014; Faverjon & Tournassoud 1987 (velocity dampers)
-//! Checked  tests/it/servo/tasks.rs, tests/allocation.rs
+//! Checked  tests/it/servo/tasks.rs, tests/allocation/main.rs
 
 use super::braking_path::BrakingPath;
+use super::escape::Escape;
 use super::gradient::Gradient;
 use super::levels::{Member, Stack, TaskRows};
 use super::motions::Motions;
@@ -122,6 +123,8 @@ pub struct TaskServo {
     pub(super) desired_rates: Option<Vec<f64>>,
     pub(super) braking: BrakingPath,
     pub(super) lowest_velocities: Vec<f64>,
+    /// From configurations in which the first level is lost, where it can.
+    pub(super) escape: Option<Box<Escape>>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
     last_targets: Vec<Vec<f64>>,
@@ -170,7 +173,7 @@ impl TaskServo {
             tasks.iter().filter(|t| t.objective.rows() > 0).map(|t| t.level).collect();
         levels.sort_unstable();
         levels.dedup();
-        let stacks = levels
+        let stacks: Vec<Stack> = levels
             .iter()
             .map(|&level| {
                 let mut first = 0;
@@ -178,7 +181,7 @@ impl TaskServo {
                 for (i, task) in tasks.iter().enumerate() {
                     let m = task.objective.rows();
                     if task.level == level && m > 0 {
-                        members.push(Member::new(i, first..first + m));
+                        members.push(Member::new(i, first..first + m, u));
                         first += m;
                     }
                 }
@@ -209,10 +212,8 @@ impl TaskServo {
             state: mechanism.state(mechanism.home())?,
             scratch: Scratch::new(mechanism, tasks.iter().any(|t| t.objective.needs_masses())),
             rows,
-            stacks,
             set: ActiveSet::new(u, inequalities),
             gradients: tasks.iter().map(|t| t.objective.gradient(mechanism, length)).collect(),
-            motions,
             limits,
             bounds: vec![VelocityBounds::NONE; v],
             near: Vec::with_capacity(capacity + MOST_PAIRS),
@@ -232,10 +233,13 @@ impl TaskServo {
             desired_rates,
             braking: BrakingPath::new(mechanism, capacity)?,
             lowest_velocities: vec![0.0; n],
+            escape: Escape::new(mechanism, &motions, &tasks, &stacks).map(Box::new),
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
             last_targets,
             predictor: Predictor::new(mechanism, options.plant, options.dt),
+            stacks,
+            motions,
             tasks,
             options,
         })
@@ -323,9 +327,8 @@ impl TaskServo {
         self.rates.fill(0.0);
         self.accelerations.fill(0.0);
         self.braking.reset();
-        if let Some(predictor) = &mut self.predictor {
-            predictor.reset();
-        }
+        self.escape.iter_mut().for_each(|escape| escape.reset());
+        self.predictor.iter_mut().for_each(Predictor::reset);
         self.detectors.fill(StallDetector::new());
         self.set.reset();
         for stack in &mut self.stacks {
@@ -370,9 +373,11 @@ impl TaskServo {
         self.load_bounds(None);
         self.load_distances()?;
         self.load_desired();
-        self.solve_within_limits();
+        self.solve_within_limits(Self::solve);
+        let achieved = self.escape()?;
         Error::check_finite("joint velocities", &self.last)?;
         let braking = self.store()?;
+        self.record_progress(achieved, braking);
         if let Some(predictor) = &mut self.predictor {
             let mechanism = self.state.mechanism();
             predictor.record(mechanism, &self.rates[..mechanism.n()]);
@@ -382,7 +387,7 @@ impl TaskServo {
     }
 
     /// Error, feed-forward velocity and Jacobian of all tasks at the configuration of the state.
-    fn evaluate(&mut self) -> Result<()> {
+    pub(super) fn evaluate(&mut self) -> Result<()> {
         for (task, rows) in self.tasks.iter_mut().zip(&mut self.rows) {
             let mut rows = Rows {
                 error: &mut rows.error,

@@ -23,6 +23,7 @@ mod secondary;
 mod shared;
 mod stall;
 mod steps;
+mod task_edges;
 mod task_invariance;
 mod task_kinds;
 mod task_reports;

@@ -30,9 +30,11 @@ impl Servo {
         let braking = self.store_rates();
         if let Some(escape) = &mut self.escape {
             match share {
-                Some(share) if !braking.accelerating => escape.record(share, self.options.dt),
+                Some(share) if !braking.accelerating => {
+                    escape.progress.record(share, self.options.dt)
+                }
                 Some(_) => {}
-                None => escape.reset(),
+                None => escape.progress.reset(),
             }
         }
         self.load_achieved_twist();
@@ -82,10 +84,12 @@ impl Servo {
             way: None,
         };
         let folds = escape.folds_at_limit(task, &mut edge);
-        if !(folds || escape.is_active) || !escape.solve(task, &mut edge, folds) {
+        if !(folds || escape.progress.is_lost) || !escape.solve(task, &mut edge, folds) {
             return false;
         }
-        for ((out, rate), bound) in self.primary.iter_mut().zip(&escape.rates).zip(&self.bounds) {
+        for ((out, rate), bound) in
+            self.primary.iter_mut().zip(&escape.saddle.rates).zip(&self.bounds)
+        {
             *out = bound.clamp(*rate);
         }
         true

@@ -266,7 +266,7 @@ impl Servo {
             }
         }
         if let Some(escape) = &mut self.escape {
-            escape.reset();
+            escape.progress.reset();
         }
         self.active.fill(None);
         self.at_limit.clear();

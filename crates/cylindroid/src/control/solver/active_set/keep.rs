@@ -3,33 +3,68 @@
 //! Source   Escande, Mansard & Wieber 2014
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
 
-use super::{ActiveSet, DEPENDENT, Level, Objective, Precision, Use};
+use std::ops::Range;
+
+use super::{ActiveSet, DEPENDENT, Level, Objective, Precision, Use, Weak};
 use crate::linalg::{dot, norm};
 
 impl ActiveSet {
-    /// Reduces the target of a level to the motions that the levels before leave it, without
-    /// directions whose singular values are below `eps` of the norm of its rows: what remains can be
-    /// scaled. Returns the size of the part left out.
-    pub(in crate::control) fn reduce_target(&mut self, level: &mut Level, eps: f64) -> f64 {
+    /// Reduces the target of a level to the motions that the levels before leave it, weak directions of
+    /// it damped: what remains can be scaled. `error` is that of the tasks of a direction of its rows;
+    /// rows of a large weight are changed little for weak directions, while what rows contradict is shared
+    /// by all alike. Returns the size of the part left out.
+    ///
+    /// ```text
+    /// of the residual r = b - A y_w:  sum_i f_i u_i (u_i . r),  f_i = s_i^2 / (s_i^2 + d_i)
+    /// ```
+    ///
+    /// y_w are the motions of the levels before, d_i is the damping for the error in u_i; f_i = 1 where
+    /// s_i is above `weak.below` of the norm of the rows.
+    pub(in crate::control) fn reduce_target(
+        &mut self,
+        level: &mut Level,
+        weak: Weak,
+        error: impl Fn(&[f64]) -> f64,
+        weights: impl Iterator<Item = (Range<usize>, f64)> + Clone,
+    ) -> f64 {
         level.scale = level.rows.frobenius_norm();
-        level.load_residual(&self.y);
+        self.normal.copy_from_slice(&self.y);
+        self.basis.project_out(self.fixed, &mut self.normal);
+        self.basis.project_out(self.fixed, &mut self.normal);
+        // What the levels before do to its rows.
+        self.direction.copy_from_slice(&self.y);
+        self.direction.iter_mut().zip(&self.normal).for_each(|(y, z)| *y -= z);
+        level.load_residual(&self.direction);
         level.project(&self.basis, self.fixed);
         level.svd.decompose_warm(&level.projected);
-        level.along.fill(0.0);
-        for i in 0..level.svd.len() {
-            if level.svd.value(i) > eps * level.scale {
-                let u = level.svd.u(i);
-                let share = dot(u, &level.residual);
-                level.along.iter_mut().zip(u).for_each(|(a, u)| *a += share * u);
+        let (edge, none) = (weak.below * level.scale, weak.none * level.scale);
+        let damped = |s: f64, u: &[f64]| match s {
+            s if s > edge => 1.0,
+            s if s > none => s * s / (s * s + weak.damping(error(u))),
+            _ => 0.0,
+        };
+        let mut weighted = weights.filter(|(_, weight)| *weight != 1.0);
+        let is_weak = level.svd.values().any(|s| s > none && s <= edge);
+        let Some(first) = weighted.next().filter(|_| is_weak) else {
+            return level.filter_target(damped).sqrt();
+        };
+        let weighted = std::iter::once(first).chain(weighted);
+        let contradicted = level.filter_target(|s, _| if s > none { 1.0 } else { 0.0 });
+        level.residual.copy_from_slice(&level.along);
+        for (rows, weight) in weighted.clone() {
+            for j in 0..level.projected.cols() {
+                let column = &mut level.projected.column_mut(j)[rows.clone()];
+                column.iter_mut().for_each(|x| *x *= weight);
             }
+            level.residual[rows].iter_mut().for_each(|x| *x *= weight);
         }
-        let mut left_out = 0.0;
-        let parts = level.target.iter_mut().zip(&level.residual).zip(&level.along);
-        for ((b, r), a) in parts {
-            left_out += (r - a) * (r - a);
-            *b += a - r;
+        level.svd.decompose_warm(&level.projected);
+        level.filter_residual(damped);
+        for (rows, weight) in weighted {
+            level.residual[rows.clone()].iter_mut().for_each(|x| *x /= weight);
+            level.along[rows].iter_mut().for_each(|x| *x /= weight);
         }
-        f64::sqrt(left_out)
+        (contradicted + level.replace_residual()).sqrt()
     }
 
     /// Minimises a damped level, then keeps its rows.
@@ -95,5 +130,32 @@ impl ActiveSet {
             level.remove_direction(&self.normal);
         }
         self.rebuild(0);
+    }
+}
+
+impl Level {
+    /// `along` becomes the residual on the motions of the decomposed rows, each by its share.
+    fn filter_residual(&mut self, share: impl Fn(f64, &[f64]) -> f64) {
+        self.along.fill(0.0);
+        for i in 0..self.svd.len() {
+            let u = self.svd.u(i);
+            let part = share(self.svd.value(i), u) * dot(u, &self.residual);
+            self.along.iter_mut().zip(u).for_each(|(a, u)| *a += part * u);
+        }
+    }
+
+    /// Replaces the residual in the target by `along`; returns the square of the difference.
+    fn replace_residual(&mut self) -> f64 {
+        let parts = self.target.iter_mut().zip(&self.residual).zip(&self.along);
+        let change = |((b, r), a): ((&mut f64, &f64), &f64)| {
+            *b += a - r;
+            (r - a) * (r - a)
+        };
+        parts.map(change).sum()
+    }
+
+    fn filter_target(&mut self, share: impl Fn(f64, &[f64]) -> f64) -> f64 {
+        self.filter_residual(share);
+        self.replace_residual()
     }
 }

@@ -2,20 +2,22 @@
 //! and in closed chains away from type II singularities.
 #![allow(missing_docs, unsafe_code, clippy::unwrap_used)]
 
+mod tasks;
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 use cylindroid::closure::assemble;
 use cylindroid::collision::{CollisionModel, CollisionOptions};
 use cylindroid::control::{
-    Admittance, AdmittanceGain, CollisionAvoidance, HalfSpace, HybridController, HybridInput,
-    MotionTask, Plant, SecondaryTask, ServoGains, SharedController, SharedInput, Task,
-    TaskObjective, TaskProjection, TaskServo, TaskServoOptions,
+    Admittance, AdmittanceGain, HybridController, HybridInput, MotionTask, Plant, SecondaryTask,
+    ServoGains, SharedController, SharedInput, Task, TaskObjective, TaskProjection, TaskServo,
+    TaskServoOptions,
 };
 use cylindroid::ik::Analytic;
 use cylindroid::inverse::{HyperbolicDamping, Method};
 use cylindroid::kinematics::{Chain, EndEffector, KinematicsBatch};
-use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Link, Visual};
+use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Link};
 use cylindroid::screws::{Complement, Projector, ScrewOptions};
 use cylindroid::spatial::Mat3;
 use cylindroid::{
@@ -226,88 +228,6 @@ fn closed_chains_allocate_nothing() {
             assert_eq!(counted, 0, "{name}: {counted} allocations");
             assert!(scaled > 0, "{name}: no limit was met");
         }
-    }
-}
-
-/// Many tasks, with limits that bite and an obstacle in the way.
-#[test]
-fn many_tasks_allocate_nothing() {
-    for name in ["panda", "ur5e", "youbot"] {
-        let mut builder = Mechanism::builder(name);
-        let robot = catalogue::load(name).unwrap();
-        for link in robot.links() {
-            let shape = Visual { geometry: Geometry::Sphere { radius: 0.05 }, ..Visual::default() };
-            builder.link(Link { collisions: vec![shape.into()], ..link.clone() });
-        }
-        for joint in robot.joints() {
-            let [parent, child] = [joint.parent, joint.child].map(|l| &robot.links()[l].name);
-            builder.joint(JointSpec {
-                axis: joint.axis,
-                parent_from_joint: joint.parent_from_joint,
-                limits: joint.limits,
-                ..JointSpec::new(&joint.name, joint.kind, parent, child)
-            });
-        }
-        let robot = builder.build().unwrap();
-        let mut q = robot.home().to_vec();
-        let state = robot.state(&q).unwrap();
-        let last = robot.frame(&robot.links().last().unwrap().name).unwrap();
-        let mut pose = state.pose(last);
-        pose.translation.x += 0.3;
-        let middle = robot.frame(&robot.links()[4].name).unwrap();
-        let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
-        let between = Pose::from_translation(pose.translation + Vec3::new(-0.1, 0.0, 0.05));
-        model.add_obstacle("ball", &Geometry::Sphere { radius: 0.05 }, between).unwrap();
-        let tasks = vec![
-            MotionTask::new("hand", frame(last.into(), Task::POSITION, pose)),
-            MotionTask::new("middle", frame(middle.into(), Task::POSE, pose)).at_level(1),
-            MotionTask::new("posture", TaskObjective::Posture { q: q.clone() }),
-        ];
-        let mut options = TaskServoOptions::new(&robot);
-        options.acceleration = 5.0;
-        options.collisions = Some(CollisionAvoidance { model, gap: 0.01, margin: 0.2 });
-        let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
-        servo.step(&q).unwrap();
-        let mut stopped = 0;
-        let counted = count(|| {
-            for _ in 0..500 {
-                servo.step(&q).unwrap();
-                servo.advance(&mut q);
-                stopped += usize::from(servo.reports()[0].stopped_by.is_some());
-            }
-        });
-        assert_eq!(counted, 0, "{name}");
-        assert!(stopped > 0, "{name}: nothing stopped it");
-    }
-}
-
-/// Many tasks of every closed chain, with a half-space: away from type II singularities.
-#[test]
-fn tasks_of_closed_chains_allocate_nothing() {
-    for name in catalogue::names() {
-        let mechanism = catalogue::load(name).unwrap();
-        if !mechanism.is_closed() {
-            continue;
-        }
-        let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
-        let defaults = ServoOptions::new(&mechanism);
-        let end_effector = defaults.end_effector;
-        let pose = mechanism.state(&q).unwrap().pose(end_effector);
-        let target = Pose { translation: pose.translation + Vec3::X * 1e-3, ..pose };
-        let objective = frame(end_effector, defaults.task, target);
-        let posture = TaskObjective::Posture { q: q.clone() };
-        let mut options = TaskServoOptions::new(&mechanism);
-        options.half_spaces = vec![HalfSpace {
-            name: "wall".to_owned(),
-            end_effector,
-            point: target.translation,
-            normal: Vec3::ZERO - Vec3::X,
-        }];
-        let tasks = vec![MotionTask::new("a", objective), MotionTask::new("b", posture)];
-        let mut servo = TaskServo::new(&mechanism, tasks, options).unwrap();
-        servo.step(&q).unwrap();
-        let counted = count(|| (0..100).for_each(|_| _ = servo.step(&q).unwrap()));
-        assert_eq!(counted, 0, "{name}");
     }
 }
 
