@@ -324,8 +324,9 @@ mod tests {
         let server = runtime.block_on(Server::of(Arc::new(start), None, place)).unwrap();
         let url = server.url();
         runtime.spawn(server.serve_on());
-        let (mut gone, mut there) = (connect(&url), connect(&url));
+        // The silence of a client counts from its connection, which comes after this.
         let begin = Instant::now();
+        let (mut gone, mut there) = (connect(&url), connect(&url));
         let end = thread::spawn(move || {
             let mut bytes = [0; 4096];
             while begin.elapsed() < WAIT {
