@@ -107,6 +107,12 @@ impl Surroundings<'_> {
         }
     }
 
+    /// Size of these velocities without those that press joints against their limits.
+    pub(in crate::control) fn free_size(&self, rates: &[f64]) -> f64 {
+        let free = rates.iter().enumerate().filter(|(i, rate)| !self.blocks(*i, **rate));
+        free.map(|(_, rate)| rate * rate).sum::<f64>().sqrt()
+    }
+
     /// True if no joint is at a limit against which these velocities press it.
     pub(in crate::control) fn are_free(&self, rates: &[f64]) -> bool {
         !rates.iter().enumerate().any(|(i, rate)| self.blocks(i, *rate))

@@ -22,6 +22,10 @@ const COLUMNS: usize = 2;
 /// Step of the differences [rad or m].
 const DIFFERENCE: f64 = 1e-6;
 
+/// Gradients above this share of the error, scaled by the Jacobian, are those of tasks that joints can
+/// perform [-].
+const WEAK: f64 = 0.05;
+
 /// Longest way out of a saddle (s), and more by so many times the time of its gain [-].
 const LONGEST: f64 = 1.0;
 const TIMES: f64 = 3.0;
@@ -197,7 +201,10 @@ impl TaskServo {
             gain,
             fastest: (f64::INFINITY, f64::INFINITY),
         };
-        let leads_out = saddle.leave(&around, error, false);
+        // A task that slow joints slow down is not lost.
+        let steep = WEAK * saddle.hessian.frobenius_norm().sqrt() * error;
+        let leads_out =
+            around.free_size(&saddle.gradient) <= steep && saddle.leave(&around, error, false);
         let left = norm(&saddle.rates) / gain;
         escape.phase =
             if leads_out { Phase::Leaving { time: 0.0, left } } else { Phase::Resting(error) };
