@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 
 use cylindroid::catalogue;
 use cylindroid::control::{
-    MotionTask, Plant, Status, Task, TaskObjective, TaskServo, TaskServoOptions, TwistStatus,
-    simulate,
+    MotionTask, Plant, Stall, Status, Task, TaskObjective, TaskServo, TaskServoOptions,
+    TwistStatus, simulate,
 };
 use cylindroid::kinematics::EndEffector;
 use cylindroid::model::{Inclusion, Mechanism};
 use cylindroid::{Pose, Servo, ServoOptions, Twist, Vec3};
 
-use crate::support::Random;
+use crate::support::{Random, planar};
 
 /// Steps of the simulation in a step of the servo.
 const SUBSTEPS: usize = 50;
@@ -294,6 +294,32 @@ fn twists_are_followed_and_stopped() {
         assert!((moved.z - 0.1 * 1.1).abs() < 0.01, "{plant:?}: {moved:?}");
         assert!(moved.x.hypot(moved.y) < 1e-3, "{plant:?}: {moved:?}");
         assert_eq!(last.unwrap().status, TwistStatus::AtRest);
+    }
+}
+
+/// Pushed against a limit the joint is named, wherever rounding lets it rest.
+#[test]
+fn a_lever_at_its_limit_is_named() {
+    let lever = planar(1);
+    let upper = lever.coordinates()[0].limits.upper;
+    for (plant, dt) in PLANTS.into_iter().flat_map(|plant| [(plant, 0.004), (plant, 0.001)]) {
+        for k in 0..40 {
+            let mut options = ServoOptions::new(&lever);
+            (options.dt, options.plant, options.task) = (dt, plant, Task::POSITION);
+            let mut servo = Servo::new(&lever, options).unwrap();
+            let mut drives = Drives::new(&[upper - 0.5 + 0.01 * f64::from(k).sin()], plant);
+            let mut last = TwistStatus::AtRest;
+            for _ in 0..(4.0 / dt) as usize {
+                let (sine, cosine) = drives.q[0].sin_cos();
+                let twist =
+                    Twist { linear: Vec3::new(-sine, cosine, 0.0) * 0.2, angular: Vec3::ZERO };
+                last = servo.step_twist(&drives.q, Some(twist)).unwrap().status;
+                drives.pass(&lever, servo.joint_velocities(), dt);
+            }
+            let at = format!("{plant:?}, {dt}, {k}: {}", upper - drives.q[0]);
+            assert_eq!(last, TwistStatus::Stalled, "{at}");
+            assert_eq!(servo.stall(), Stall::Limits { coordinates: vec![0] }, "{at}");
+        }
     }
 }
 

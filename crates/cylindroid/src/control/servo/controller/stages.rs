@@ -342,6 +342,8 @@ impl Servo {
         let size =
             self.x.iter().zip(&self.achieved_twist).map(left).map(|r| r * r).sum::<f64>().sqrt();
         let least = BLOCKED * self.svd.value(0) * size;
+        // A motion that is too small to matter is scaled to nothing, however small the bound is.
+        let still = AT_LIMIT / self.options.dt;
         // For closed chains in actuated coordinates: the direction of steepest descent of the
         // error.
         if let Some(coupled) = &mut self.coupled {
@@ -360,8 +362,8 @@ impl Servo {
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()
                 }
             };
-            let above = l.upper - q < AT_LIMIT && rate >= bound.upper && pull > least;
-            let below = q - l.lower < AT_LIMIT && rate <= bound.lower && pull < -least;
+            let above = l.upper - q < AT_LIMIT && rate > bound.upper - still && pull > least;
+            let below = q - l.lower < AT_LIMIT && rate < bound.lower + still && pull < -least;
             if !self.space.is_locked(i) && (above || below) {
                 self.at_limit.push(c);
             }
