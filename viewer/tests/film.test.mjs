@@ -93,12 +93,13 @@ test("a recording is one HTML file that plays from its file, without a server", 
       await film.locator(".legend").getByText("Velocity ellipsoid").waitFor();
       await film.locator('[data-plot="joints"] canvas').waitFor();
       await picture(film, "film");
-      // Played from the beginning, slowly: it does not end before it is paused.
+      // Played from the beginning, slowly: it does not end before it is paused. The slider may have rounded its end.
+      await film.evaluate(() => /** @type {any} */ (window).film.player.seek(/** @type {any} */ (window).film.recording.duration - 1e-12));
       await film.getByLabel("Speed of playing back").selectOption({ index: 0 });
       await film.getByRole("button", { name: "Play back" }).click();
-      await film.waitForFunction((seq) => /** @type {any} */ (window).film.state().seq > seq, states[3].seq);
+      await film.waitForFunction(() => /** @type {any} */ (window).film.player.time > 0.01 && /** @type {any} */ (window).film.player.playing);
       await film.getByRole("button", { name: "Pause playback" }).click();
-      assert.ok((await shown(film)) <= states.at(-1).seq);
+      assert.ok((await shown(film)) < states.at(-1).seq);
       await film.keyboard.press("Home");
       assert.ok(times.at(-1) > 0.2);
     });
