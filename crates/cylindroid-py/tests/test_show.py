@@ -3,6 +3,7 @@
 import gc
 import queue
 import threading
+import time
 import urllib.error
 import urllib.request
 
@@ -211,6 +212,21 @@ def test_one_waits_for_the_pages():
         page.close()
         waited.join(PATIENCE)
         assert not waited.is_alive()
+
+
+def test_one_waits_for_each_page_once():
+    with cy.show(PANDA, open=False) as view:
+        assert not view.wait(timeout=0.0)
+        page = Page(view.url)
+        page.next("state")
+        assert not view.wait(timeout=0.0)
+        page.close()
+        deadline = time.monotonic() + PATIENCE
+        while view.pages and time.monotonic() < deadline:
+            time.sleep(0.01)
+        # It has come and gone before.
+        assert view.wait(timeout=0.0)
+        assert not view.wait(timeout=0.0)
 
 
 def test_a_view_that_nobody_holds_stays_open():

@@ -113,6 +113,11 @@ impl Viewer {
         self.shared.clients()
     }
 
+    /// The number of pages that have shown it.
+    pub fn visits(&self) -> u64 {
+        self.shared.visits()
+    }
+
     /// The configuration that is shown.
     pub fn q(&self) -> Vec<f64> {
         self.shared.read(|inner| inner.session.state().q().to_vec())

@@ -198,6 +198,11 @@ impl SharedSession {
         self.lock().clients.len()
     }
 
+    /// The number of clients that there have been.
+    pub(super) fn visits(&self) -> u64 {
+        self.lock().next
+    }
+
     /// A client alone always drives.
     fn has_roles(&self, inner: &Inner) -> bool {
         self.name.is_some() || inner.program.is_some()

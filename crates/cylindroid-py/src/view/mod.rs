@@ -4,6 +4,7 @@ mod callbacks;
 pub(crate) mod start;
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -53,6 +54,8 @@ pub(crate) struct PyView {
     callbacks: Arc<Callbacks>,
     mechanism: Mechanism,
     url: String,
+    /// Pages that there had been when the last wait for them ended.
+    waited_for: AtomicU64,
 }
 
 impl PyView {
@@ -60,7 +63,7 @@ impl PyView {
         let (url, viewer) = (viewer.url().to_owned(), Arc::new(viewer));
         OPEN.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(&viewer));
         let viewer = Mutex::new(Some(viewer));
-        Self { viewer, callbacks: Arc::default(), mechanism, url }
+        Self { viewer, callbacks: Arc::default(), mechanism, url, waited_for: AtomicU64::new(0) }
     }
 
     fn open_viewer(&self) -> Option<Arc<Viewer>> {
@@ -368,7 +371,8 @@ impl PyView {
         Ok(())
     }
 
-    /// Waits until all pages are closed, at least one having been open, or the view is.
+    /// Waits until all pages are closed, at least one having been open since the last such wait,
+    /// or the view is.
     ///
     /// Parameters
     /// ----------
@@ -386,14 +390,13 @@ impl PyView {
             return Err(Failure::option("timeout", timeout.to_string(), reason));
         }
         let begin = Instant::now();
-        let mut was_seen = false;
         while let Some(viewer) = self.open_viewer() {
-            let pages = py.detach(|| viewer.clients());
+            let (visits, pages) = py.detach(|| (viewer.visits(), viewer.clients()));
             drop(viewer);
-            if was_seen && pages == 0 {
+            if pages == 0 && visits > self.waited_for.load(Ordering::Relaxed) {
+                self.waited_for.store(visits, Ordering::Relaxed);
                 return Ok(true);
             }
-            was_seen |= pages > 0;
             if begin.elapsed().as_secs_f64() >= timeout {
                 return Ok(false);
             }
