@@ -1,7 +1,7 @@
 /** The moment of a recording that is shown, and its motion through time. */
 
-/** What is left to play at the end, where a slider rounds it (s). */
-const NOTHING = 1e-6;
+/** Nearer to the end than this it is the end: the slider rounds its value (s). */
+const AT_END = 1e-6;
 
 export class Player {
   /** From the first sample (s). */
@@ -27,7 +27,7 @@ export class Player {
 
   play(): void {
     if (this.playing || this.end === 0) return;
-    if (this.end - this.time < NOTHING) this.time = 0;
+    if (this.end - this.time < AT_END) this.time = 0;
     this.playing = true;
     this.last = performance.now();
     this.changed();

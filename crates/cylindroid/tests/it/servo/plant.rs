@@ -4,21 +4,21 @@ use std::collections::VecDeque;
 
 use cylindroid::catalogue;
 use cylindroid::control::{
-    MotionTask, Plant, Stall, Status, Task, TaskObjective, TaskServo, TaskServoOptions,
-    TwistStatus, simulate,
+    MotionTask, Plant, Status, Task, TaskObjective, TaskServo, TaskServoOptions, TwistStatus,
+    simulate,
 };
 use cylindroid::kinematics::EndEffector;
 use cylindroid::model::{Inclusion, Mechanism};
 use cylindroid::{Pose, Servo, ServoOptions, Twist, Vec3};
 
-use crate::support::{Random, planar};
+use crate::support::Random;
 
 /// Steps of the simulation in a step of the servo.
 const SUBSTEPS: usize = 50;
 
 /// A robot behind drives of first order whose commands arrive late.
-struct Drives {
-    q: Vec<f64>,
+pub(super) struct Drives {
+    pub(super) q: Vec<f64>,
     velocities: Vec<f64>,
     /// Commands and the time at which they arrive (s).
     commands: VecDeque<(f64, Vec<f64>)>,
@@ -31,7 +31,7 @@ struct Drives {
 }
 
 impl Drives {
-    fn new(q: &[f64], plant: Plant) -> Self {
+    pub(super) fn new(q: &[f64], plant: Plant) -> Self {
         let n = q.len();
         Self {
             q: q.to_vec(),
@@ -50,7 +50,7 @@ impl Drives {
     }
 
     /// Lets `dt` pass; within a substep the command is that of its middle.
-    fn pass(&mut self, mechanism: &Mechanism, command: &[f64], dt: f64) {
+    pub(super) fn pass(&mut self, mechanism: &Mechanism, command: &[f64], dt: f64) {
         self.commands.push_back((self.now + self.plant.delay, command.to_vec()));
         let h = dt / SUBSTEPS as f64;
         let kept = if self.plant.time_constant > 0.0 {
@@ -78,7 +78,7 @@ impl Drives {
     }
 }
 
-const PLANTS: [Plant; 4] = [
+pub(super) const PLANTS: [Plant; 4] = [
     Plant { delay: 0.001, time_constant: 0.010, noise: 0.0 },
     Plant { delay: 0.020, time_constant: 0.010, noise: 0.0 },
     Plant { delay: 0.0, time_constant: 0.060, noise: 0.0 },
@@ -294,32 +294,6 @@ fn twists_are_followed_and_stopped() {
         assert!((moved.z - 0.1 * 1.1).abs() < 0.01, "{plant:?}: {moved:?}");
         assert!(moved.x.hypot(moved.y) < 1e-3, "{plant:?}: {moved:?}");
         assert_eq!(last.unwrap().status, TwistStatus::AtRest);
-    }
-}
-
-/// Pushed against a limit the joint is named, wherever rounding lets it rest.
-#[test]
-fn a_lever_at_its_limit_is_named() {
-    let lever = planar(1);
-    let upper = lever.coordinates()[0].limits.upper;
-    for (plant, dt) in PLANTS.into_iter().flat_map(|plant| [(plant, 0.004), (plant, 0.001)]) {
-        for k in 0..40 {
-            let mut options = ServoOptions::new(&lever);
-            (options.dt, options.plant, options.task) = (dt, plant, Task::POSITION);
-            let mut servo = Servo::new(&lever, options).unwrap();
-            let mut drives = Drives::new(&[upper - 0.5 + 0.01 * f64::from(k).sin()], plant);
-            let mut last = TwistStatus::AtRest;
-            for _ in 0..(4.0 / dt) as usize {
-                let (sine, cosine) = drives.q[0].sin_cos();
-                let twist =
-                    Twist { linear: Vec3::new(-sine, cosine, 0.0) * 0.2, angular: Vec3::ZERO };
-                last = servo.step_twist(&drives.q, Some(twist)).unwrap().status;
-                drives.pass(&lever, servo.joint_velocities(), dt);
-            }
-            let at = format!("{plant:?}, {dt}, {k}: {}", upper - drives.q[0]);
-            assert_eq!(last, TwistStatus::Stalled, "{at}");
-            assert_eq!(servo.stall(), Stall::Limits { coordinates: vec![0] }, "{at}");
-        }
     }
 }
 

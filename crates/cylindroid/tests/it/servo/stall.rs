@@ -1,5 +1,8 @@
 //! Why a servo stops.
 
+use cylindroid::control::TwistStatus;
+
+use super::plant::{Drives, PLANTS};
 use super::*;
 
 #[test]
@@ -233,4 +236,48 @@ fn stall_of_an_arm_locked_straight_is_not_called_singular() {
         panic!("{:?}", outcome.stall)
     };
     assert_eq!((rank, task), (1, 3));
+}
+
+/// A lever that turns within 3 rad.
+fn lever(foundation: Pose, length: f64) -> Mechanism {
+    let mut builder = Mechanism::builder("lever");
+    builder.joint(JointSpec {
+        parent_from_joint: foundation,
+        limits: Limits { lower: -3.0, upper: 3.0, velocity: 2.0, ..Limits::NONE },
+        ..JointSpec::new("hinge", JointKind::Revolute, "base", "arm")
+    });
+    builder.frame("tip", "arm", Pose::from_translation(Vec3::X * length));
+    builder.tool("tip");
+    builder.build().unwrap()
+}
+
+/// A joint that is pushed against a limit is named, wherever rounding lets it rest: at both ends, at any
+/// joint weight, on any foundation and at any size.
+#[test]
+fn stall_names_a_joint_that_rests_at_its_limit() {
+    let mut random = Random(19);
+    for (plant, dt) in PLANTS.into_iter().flat_map(|plant| [(plant, 0.004), (plant, 0.001)]) {
+        for k in 0..36 {
+            let (side, weight) = ([1.0, -1.0][k % 2], [1.0, 1e-6, 1e6][k / 2 % 3]);
+            let length = [1.0, 1e-3, 1e3][k / 6 % 3];
+            let foundation = if k < 18 { Pose::IDENTITY } else { random.pose() };
+            let robot = lever(foundation, length);
+            let mut options = ServoOptions::new(&robot);
+            (options.dt, options.plant, options.task) = (dt, plant, Task::POSITION);
+            options.joint_weights = vec![weight];
+            let mut servo = Servo::new(&robot, options).unwrap();
+            let mut drives = Drives::new(&[side * (2.5 + random.within(-0.01, 0.01))], plant);
+            let mut last = TwistStatus::AtRest;
+            for _ in 0..(4.0 / dt) as usize {
+                let (sine, cosine) = drives.q[0].sin_cos();
+                let along = Vec3::new(-sine, cosine, 0.0) * (0.2 * side * length);
+                let twist = Twist { linear: foundation.rotation * along, angular: Vec3::ZERO };
+                last = servo.step_twist(&drives.q, Some(twist)).unwrap().status;
+                drives.pass(&robot, servo.joint_velocities(), dt);
+            }
+            let at = format!("{plant:?}, {dt}, {k}: {}", 3.0 * side - drives.q[0]);
+            assert_eq!(last, TwistStatus::Stalled, "{at}");
+            assert_eq!(servo.stall(), Stall::Limits { coordinates: vec![0] }, "{at}");
+        }
+    }
 }

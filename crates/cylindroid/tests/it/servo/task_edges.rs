@@ -1,6 +1,8 @@
 //! Many tasks at the edge of reach: the robot comes to rest there, and comes back.
 
-use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions};
+use cylindroid::control::{
+    LimitKind, MotionTask, StoppedBy, TaskObjective, TaskServo, TaskServoOptions,
+};
 
 use super::escape::within;
 use super::*;
@@ -55,7 +57,8 @@ fn rests_and_returns(name: &str, least: [usize; 2], quietest: [f64; 2]) {
     for ((gain, least), quietest) in [5.0, 1.0 / DT].into_iter().zip(least).zip(quietest) {
         for keep_directions in [true, false] {
             let mut random = Random(191);
-            let (mut returned, mut jumps, mut worst) = (0, 0.0_f64, 0.0_f64);
+            let (mut returned, mut at_limit) = (0, 0);
+            let (mut jumps, mut worst) = (0.0_f64, 0.0_f64);
             for _ in 0..5 {
                 let start = within(&robot, &mut random);
                 let pose = robot.state(&start).unwrap().pose(robot.tool());
@@ -64,13 +67,20 @@ fn rests_and_returns(name: &str, least: [usize; 2], quietest: [f64; 2]) {
                         let mut servo = of_pose(&robot, pose, gain, keep_directions);
                         let mut q = start.clone();
                         let (jump, error) = out_and_back(&mut servo, &mut q, pose, direction);
+                        let stop = servo.reports()[0].stopped_by;
+                        let at_one = matches!(
+                            stop,
+                            Some(StoppedBy::Limit { kind: LimitKind::Position, .. })
+                        );
                         returned += usize::from(error < 1e-3);
+                        at_limit += usize::from(error >= 1e-3 && at_one);
                         (jumps, worst) = (jumps.max(jump), worst.max(error));
                     }
                 }
             }
             println!(
-                "{name}, gain {gain}, {keep_directions}: {returned} of 30, {worst:.3} m, {jumps:.3} rad/s"
+                "{name}, gain {gain}, {keep_directions}: {returned} of 30, {at_limit} at limits, \
+                 {worst:.3} m, {jumps:.3} rad/s"
             );
             assert!(returned >= least, "{name}, gain {gain}, {keep_directions}: {returned} of 30");
             assert!(jumps < quietest, "{name}, gain {gain}, {keep_directions}: {jumps} rad/s");
@@ -149,4 +159,58 @@ fn straight_arms_fold() {
             }
         }
     }
+}
+
+/// Slow joints are not lost in a saddle: the tool goes straight to its target, however long it takes.
+#[test]
+fn slow_joints_do_not_escape() {
+    let slow = Limits { velocity: 2e-3, acceleration: 1.0, ..Limits::NONE };
+    let mut random = Random(192);
+    let mut straight = 0;
+    for _ in 0..20 {
+        let mut builder = Mechanism::builder("arm");
+        for i in 0..2 {
+            let (parent, link) = (format!("l{i}"), format!("l{}", i + 1));
+            builder.joint(JointSpec {
+                parent_from_joint: Pose::from_translation(Vec3::X * f64::from(i)),
+                limits: slow,
+                ..JointSpec::new(&format!("q{i}"), JointKind::Revolute, &parent, &link)
+            });
+        }
+        builder.frame("tip", "l2", Pose::from_translation(Vec3::X));
+        builder.tool("tip");
+        let robot = builder.build().unwrap();
+        let mut q = vec![random.within(-3.0, 3.0), random.within(0.3, 2.5)];
+        let end = [random.within(-3.0, 3.0), random.within(0.3, 2.5)];
+        let tip = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool());
+        let target = tip(&end);
+        for keep_directions in [true, false] {
+            let objective = TaskObjective::Frame {
+                end_effector: robot.tool().into(),
+                components: Task::POSITION,
+                target: target.into(),
+            };
+            let tasks = vec![MotionTask::new("hand", objective)];
+            let options =
+                TaskServoOptions { dt: DT, keep_directions, ..TaskServoOptions::new(&robot) };
+            let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
+            let distance = |q: &[f64]| (tip(q).translation - target.translation).norm();
+            let (way, mut last) = (target.translation - tip(&q).translation, distance(&q));
+            for step in 0..1000 {
+                servo.step(&q).unwrap();
+                servo.advance(&mut q);
+                let now = distance(&q);
+                assert!(now < last, "{keep_directions}, step {step}: {last} to {now} m");
+                last = now;
+            }
+            let left = target.translation - tip(&q).translation;
+            let aside = way.cross(left).norm() / way.norm();
+            // Long ways of bent arms leave the line on purpose: nothing is scaled then.
+            if keep_directions && servo.reports()[0].scale > 0.0 {
+                assert!(aside < 1e-6, "{aside} m beside the straight line");
+                straight += 1;
+            }
+        }
+    }
+    assert!(straight >= 14, "{straight} of 20");
 }

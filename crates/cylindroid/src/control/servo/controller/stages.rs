@@ -342,8 +342,6 @@ impl Servo {
         let size =
             self.x.iter().zip(&self.achieved_twist).map(left).map(|r| r * r).sum::<f64>().sqrt();
         let least = BLOCKED * self.svd.value(0) * size;
-        // A motion that is too small to matter is scaled to nothing, however small the bound is.
-        let still = AT_LIMIT / self.options.dt;
         // For closed chains in actuated coordinates: the direction of steepest descent of the
         // error.
         if let Some(coupled) = &mut self.coupled {
@@ -355,6 +353,8 @@ impl Servo {
         for (i, &c) in self.chain.coordinates().iter().enumerate() {
             let (rate, bound) = (self.primary[i], self.bounds[i]);
             let (q, l) = (self.chain.q()[i], self.limits[i]);
+            // A motion below rounding is scaled to zero, short of its bound.
+            let step = self.options.dt * self.space.columns[i];
             let pull: f64 = match &self.coupled {
                 Some(coupled) => coupled.coupling.along(i, &coupled.descent),
                 None => {
@@ -362,8 +362,10 @@ impl Servo {
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()
                 }
             };
-            let above = l.upper - q < AT_LIMIT && rate > bound.upper - still && pull > least;
-            let below = q - l.lower < AT_LIMIT && rate < bound.lower + still && pull < -least;
+            let above =
+                l.upper - q < AT_LIMIT && (bound.upper - rate) * step < AT_LIMIT && pull > least;
+            let below =
+                q - l.lower < AT_LIMIT && (rate - bound.lower) * step < AT_LIMIT && pull < -least;
             if !self.space.is_locked(i) && (above || below) {
                 self.at_limit.push(c);
             }
