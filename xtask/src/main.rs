@@ -101,8 +101,10 @@ cargo xtask <task>
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
   man DIR   writes the manual pages of the command line
-  release   packages the crates, with the page of the viewer, and prints what would be uploaded
-            with sizes (needs Node.js and crates.io; uploads nothing)
+  release [--build]
+            packages the crates and the Python package's sources, with the page of the viewer, and
+            prints what would be uploaded with sizes (needs Node.js, Python, crates.io and PyPI;
+            uploads nothing); with --build builds and uses each from its file alone
   figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {
@@ -154,7 +156,7 @@ fn run() -> Result<()> {
             instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
         }
         Some("man") => steps::man(std::env::args().nth(2).as_deref()),
-        Some("release") => release::check(),
+        Some("release") => release::task(std::env::args().nth(2).as_deref()),
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

@@ -55,10 +55,35 @@ pub(crate) fn wheel(python: &Path) -> Result<PathBuf> {
     }
     let build = ["-m", "maturin", "build", "--release", "--quiet", "--out"];
     run(Command::new(python).args(build).arg(&folder))?;
-    let mut wheels = fs::read_dir(&folder)?.filter_map(|e| Some(e.ok()?.path()));
-    match (wheels.next(), wheels.next()) {
-        (Some(wheel), None) => Ok(wheel),
-        _ => bail!("{} should hold one wheel", folder.display()),
+    only_file(&folder)
+}
+
+/// The source distribution, as it would be uploaded.
+pub(crate) fn source_distribution() -> Result<PathBuf> {
+    let folder = root().join("target/python-sdist");
+    if folder.exists() {
+        fs::remove_dir_all(&folder)?;
+    }
+    let python = with_maturin()?;
+    run(Command::new(python).args(["-m", "maturin", "sdist", "--quiet", "--out"]).arg(&folder))?;
+    only_file(&folder)
+}
+
+/// A Python that has maturin.
+fn with_maturin() -> Result<PathBuf> {
+    let python = environment(&root().join("target/maturin-venv"))?;
+    let wanted = fs::read_to_string(root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
+    let maturin = wanted.lines().find(|line| line.starts_with("maturin"));
+    pip(&python, &[maturin.with_context(|| format!("{REQUIREMENTS} lacks maturin"))?])?;
+    Ok(python)
+}
+
+/// The one file of a folder.
+fn only_file(folder: &Path) -> Result<PathBuf> {
+    let mut files = fs::read_dir(folder)?.filter_map(|e| Some(e.ok()?.path()));
+    match (files.next(), files.next()) {
+        (Some(file), None) => Ok(file),
+        _ => bail!("{} should hold one file", folder.display()),
     }
 }
 
@@ -118,12 +143,16 @@ pub(crate) fn test() -> Result<()> {
     run(Command::new(&python).args(pytest).env("CYLINDROID_TEST_ROBOTS", robots))?;
     run(Command::new(&python).args(["-m", "mypy.stubtest", "--concise", "cylindroid"]))?;
     viewer::follow(&python)?;
+    use_alone(&wheel)
+}
 
+/// Installs a wheel or a source distribution where nothing else is, and uses it.
+pub(crate) fn use_alone(package: &Path) -> Result<()> {
     let bare = root().join("target/python-bare-venv");
     if bare.exists() {
         fs::remove_dir_all(&bare)?;
     }
     let python = environment(&bare)?;
-    pip(&python, &[&wheel.to_string_lossy()])?;
+    pip(&python, &[&package.to_string_lossy()])?;
     run(Command::new(&python).args([format!("{TESTS}/bare.py")]))
 }

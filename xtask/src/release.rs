@@ -1,20 +1,32 @@
-//! A release of the crates, up to the upload: they are packaged and listed with their sizes, with
-//! the page of the viewer inside that of the command line.
+//! A release, up to the upload: the crates and the source distribution of the Python package, with
+//! the page of the viewer inside, are made, listed with their sizes, and built from their files.
 
 use std::fs;
-use std::path::PathBuf;
-use std::process::Command;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::shell::{captured, cargo, copy_folder, root, run};
-use crate::viewer;
+use crate::{python, viewer};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The page inside the crate of the command line.
 const PAGE: &str = "crates/cylindroid-cli/page";
 /// Larger crates are refused by crates.io (bytes).
 const LARGEST_CRATE: u64 = 10_000_000;
+/// The library first.
+const CRATES: [&str; 3] = ["cylindroid", "cylindroid-cli", "cylindroid-ros2"];
+/// What a program that depends on the library does.
+const USE: &str = r#"fn main() -> Result<(), cylindroid::Error> {
+    let panda = cylindroid::load("panda")?;
+    let state = panda.state(panda.home())?;
+    assert!(state.pose(panda.tool()).translation.x > 0.1);
+    Ok(())
+}
+"#;
 
 /// A folder that goes when it is dropped.
 struct Passing(PathBuf);
@@ -25,31 +37,119 @@ impl Drop for Passing {
     }
 }
 
-/// `cargo xtask release`.
-pub(crate) fn check() -> Result<()> {
+/// A process that ends when it is dropped.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// `cargo xtask release [--build]`.
+pub(crate) fn task(argument: Option<&str>) -> Result<()> {
+    ensure!(matches!(argument, None | Some("--build")), "release takes --build alone");
     let changed = captured(Command::new("git").args(["status", "--porcelain"]))?;
-    let files = crates()?;
+    let (crates, distribution) = packages()?;
     println!("what would be uploaded, version {VERSION}:");
-    for file in &files {
+    for file in crates.iter().chain([&distribution]) {
         let size = fs::metadata(file)?.len();
         println!("{:>8.2} MB  {}", size as f64 / 1e6, file.display());
-        ensure!(size < LARGEST_CRATE, "crates.io refuses crates of more than 10 MB");
+        ensure!(
+            *file == distribution || size < LARGEST_CRATE,
+            "crates.io refuses crates of more than 10 MB"
+        );
     }
     if !changed.is_empty() {
         println!("\nnot in the last commit, and yet in the packages:\n{changed}");
     }
+    if argument.is_some() {
+        build(&crates, &distribution)?;
+    }
     Ok(())
 }
 
-/// The crates for crates.io, the library first.
-fn crates() -> Result<Vec<PathBuf>> {
+/// The crates for crates.io and the source distribution for PyPI.
+fn packages() -> Result<(Vec<PathBuf>, PathBuf)> {
     viewer::build()?;
     let page = Passing(root().join(PAGE));
     copy_folder(&root().join("viewer/dist"), &page.0)?;
-    let crates = ["cylindroid", "cylindroid-cli", "cylindroid-ros2"];
-    let packages = crates.iter().flat_map(|name| ["--package", name]);
+    let packages = CRATES.iter().flat_map(|name| ["--package", name]);
     // The page is in no commit.
     run(cargo(&["package", "--quiet", "--no-verify", "--allow-dirty"]).args(packages))?;
     let file = |name: &str| root().join("target/package").join(format!("{name}-{VERSION}.crate"));
-    Ok(crates.map(file).to_vec())
+    Ok((CRATES.map(file).to_vec(), python::source_distribution()?))
+}
+
+/// Builds each package from its file alone, in a folder outside the workspace, and does its main
+/// job.
+fn build(crates: &[PathBuf], distribution: &Path) -> Result<()> {
+    let folder = Passing(std::env::temp_dir().join(format!("cylindroid-{}", std::process::id())));
+    let _ = fs::remove_dir_all(&folder.0);
+    fs::create_dir_all(&folder.0)?;
+    for file in crates {
+        let tar = ["--extract", "--gzip", "--directory"];
+        run(Command::new("tar").args(tar).arg(&folder.0).arg("--file").arg(file))?;
+    }
+    let unpacked = |name: &str| folder.0.join(format!("{name}-{VERSION}"));
+    // A crate of this version is not on crates.io yet.
+    let library = format!("patch.crates-io.cylindroid.path={:?}", unpacked("cylindroid"));
+    let target = folder.0.join("target");
+
+    println!("\na program that depends on {}", crates[0].display());
+    let program = folder.0.join("program");
+    fs::create_dir_all(program.join("src"))?;
+    let manifest = format!(
+        "[package]\nname = \"program\"\nedition = \"2024\"\n\n[dependencies]\ncylindroid = \
+         \"{VERSION}\"\n"
+    );
+    fs::write(program.join("Cargo.toml"), manifest)?;
+    fs::write(program.join("src/main.rs"), USE)?;
+    let arguments = ["run", "--release", "--quiet", "--config", &library, "--manifest-path"];
+    run(cargo(&arguments).arg(program.join("Cargo.toml")).env("CARGO_TARGET_DIR", &target))?;
+
+    let installed = folder.0.join("installed");
+    for (name, file) in CRATES.iter().zip(crates).skip(1) {
+        println!("\nthe programs of {}", file.display());
+        let arguments = ["install", "--quiet", "--config", &library, "--path"];
+        run(cargo(&arguments)
+            .arg(unpacked(name))
+            .arg("--root")
+            .arg(&installed)
+            .env("CARGO_TARGET_DIR", &target))?;
+    }
+    let program = |name: &str| installed.join("bin").join(name);
+    run(Command::new(program("cylindroid")).args(["mobility", "stewart"]))?;
+    serves_its_page(&program("cylindroid"))?;
+    run(Command::new(program("cylindroid-ros2")).arg("--version"))?;
+
+    println!("\nthe Python package of {}", distribution.display());
+    python::use_alone(distribution)
+}
+
+/// The page comes from the binary: there is no workspace beside it.
+fn serves_its_page(program: &Path) -> Result<()> {
+    let arguments = ["view", "panda", "--port", "0"];
+    let mut server = Running(
+        Command::new(program)
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .spawn()
+            .with_context(|| program.display().to_string())?,
+    );
+    let output = server.0.stdout.take().context("the server prints its address")?;
+    for line in BufReader::new(output).lines() {
+        let line = line?;
+        let Some((_, address)) = line.split_once("http://") else { continue };
+        let address = address.trim_end_matches('/');
+        let mut stream = TcpStream::connect(address).with_context(|| address.to_owned())?;
+        write!(stream, "GET / HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n")?;
+        let mut page = String::new();
+        stream.read_to_string(&mut page)?;
+        ensure!(page.contains("<div id=\"app\""), "{address} serves no page:\n{page}");
+        println!("serves the page of the viewer, {} bytes", page.len());
+        return Ok(());
+    }
+    bail!("`cylindroid view` prints no address")
 }

@@ -146,6 +146,23 @@ fn inverse_6x7(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| black_box(method.inverse(black_box(&j)).unwrap()));
 }
 
+/// Inverses of 10 000 Jacobians of a panda on one thread; the time is that of one.
+#[divan::bench(args = Method::ALL.map(|m| m.name()))]
+fn batch_of_inverses_6x7(bencher: Bencher<'_, '_>, name: &str) {
+    const COUNT: usize = 10_000;
+    let robot = robot("panda");
+    let n = robot.n();
+    let q: Vec<f64> = (0..COUNT * n).map(|i| (i * 7919 % 6283) as f64 * 1e-3 - 3.1).collect();
+    let jacobians = KinematicsBatch::new(&robot, robot.tool())
+        .jacobians(&q, ReferenceFrame::LocalWorldAligned)
+        .unwrap();
+    let batch = inverse::InverseBatch::new(Method::named(name).unwrap(), 6, n).unwrap();
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
+        alone.install(|| black_box(batch.inverses(black_box(&jacobians)).unwrap()))
+    });
+}
+
 /// Kinematics, Jacobian, inverse, null space, limits: a whole step along a motion of 20 cm.
 #[divan::bench(args = Method::ALL.map(|m| m.name()))]
 fn servo_step_panda(bencher: Bencher<'_, '_>, name: &str) {

@@ -1,15 +1,17 @@
 //! Inverses of many Jacobians in one call (batched pseudoinverses).
 //!
-//! Formula  that of the single inverses, to the bit
+//! Formula  that of the single inverses, to the bit; of truncated ones to rounding
 //! Shapes   J: N x m x n, inverses: N x n x m, singular values: N x min(m, n); all row-major
 //! Units    those of the Jacobians
 //! Valid    as the method; selectively damped least squares for unit motions along every direction
 //! Why so   arrays of numbers, without the truncated directions: a report for each of many would
-//!          allocate for each of its parts
+//!          allocate for each of its parts. Truncated inverses of regular Jacobians, most of what is
+//!          asked for, are batched ([`truncated_batched`](super::truncated_batched))
 //! Checked  tests/it/inverse_batch.rs
 
 use super::Method;
 use super::report::rank;
+use super::truncated_batched::{Kernel, Work};
 use crate::error::{Error, Result, all_finite};
 use crate::linalg::{Matrix, Rank, Svd, run_all};
 
@@ -128,9 +130,18 @@ impl InverseBatch {
         let mut svd = Svd::workspace(m, n);
         let mut gains = vec![0.0; svd.len()];
         let mut j = Matrix::zeros(m, n);
+        let mut done = vec![false; ranks.len()];
+        if let Method::Truncated { eps } = self.method {
+            let work = Work { jacobians, matrices, values, ranks };
+            Kernel::new(m, n, eps).run(work, &mut done);
+        }
         let all = jacobians.chunks_exact(m * n).zip(matrices.chunks_exact_mut(m * n));
-        for ((from, to), (values, report)) in all.zip(values.chunks_exact_mut(svd.len()).zip(ranks))
-        {
+        let reports = values.chunks_exact_mut(svd.len()).zip(ranks).zip(done);
+        for ((from, to), ((values, report), done)) in all.zip(reports) {
+            if done {
+                continue;
+            }
+            to.fill(0.0);
             for (i, row) in from.chunks_exact(n).enumerate() {
                 row.iter().enumerate().for_each(|(k, x)| j[(i, k)] = *x);
             }

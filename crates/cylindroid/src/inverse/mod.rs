@@ -28,6 +28,7 @@ mod report;
 mod selectively_damped;
 mod singular_value_filtering;
 pub(crate) mod truncated;
+mod truncated_batched;
 mod variable_damping;
 mod weighted;
 

@@ -39,6 +39,7 @@ pub(crate) use parallel::run_all;
 pub use qr::Qr;
 pub(crate) use qr::solve_upper;
 pub use row_space::RowSpace;
+pub(crate) use svd::rank_threshold;
 pub use svd::{Rank, Svd};
 pub use symmetric_eigen::SymmetricEigen;
 pub(crate) use vector::{dot, norm};

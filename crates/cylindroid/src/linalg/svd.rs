@@ -261,8 +261,7 @@ impl Svd {
         if k == 0 {
             return Rank { rank: 0, threshold: 0.0, gap: f64::INFINITY };
         }
-        let machine = MACHINE_RANK * self.rows.max(self.cols) as f64;
-        let threshold = (eps.max(machine) * self.value(0)).max(f64::MIN_POSITIVE);
+        let threshold = rank_threshold(eps, self.rows.max(self.cols), self.value(0));
         let rank = self.values().filter(|&s| s > threshold).count();
         let gap = if rank == 0 || rank == k || self.value(rank) == 0.0 {
             f64::INFINITY
@@ -299,6 +298,11 @@ impl Svd {
         }
         (difference / size).sqrt()
     }
+}
+
+/// The threshold of [`Svd::rank`] of a matrix with `longer` rows or columns, whichever are more.
+pub(crate) fn rank_threshold(eps: f64, longer: usize, largest: f64) -> f64 {
+    (eps.max(MACHINE_RANK * longer as f64) * largest).max(f64::MIN_POSITIVE)
 }
 
 /// The sum of the absolute numbers, or the largest one where no number holds the sum; NaN or

@@ -8,7 +8,7 @@
 //!          depends neither on its place nor on the number of rows
 //! Checked  tests::agree_with_single, tests/sweep/parts.rs
 
-use crate::linalg::batched::{round_robin_pairs, singular_values};
+use crate::linalg::batched::{round_robin_pairs, singular_values, sort_descending};
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Avx2, Avx512, Lanes4, Lanes8};
@@ -96,25 +96,13 @@ impl SingularValues {
                 }
             }
             singular_values(&mut columns, long, &self.pairs, &mut values);
-            sort(&mut values);
+            sort_descending(&mut values);
             if count == R::LANES {
                 R::scatter(&values, to, k);
             } else {
                 R::scatter(&values, &mut tail, k);
                 to.copy_from_slice(&tail[..count * k]);
             }
-        }
-    }
-}
-
-/// Largest first in each lane, by exchanges of neighbours: as many rounds as there are values.
-#[inline(always)]
-fn sort<R: SimdFloat>(values: &mut [R]) {
-    for round in 0..values.len() {
-        for pair in values[round % 2..].chunks_exact_mut(2) {
-            let [a, b] = [pair[0], pair[1]];
-            pair[0] = R::select_lt(a, b, b, a);
-            pair[1] = R::select_lt(a, b, a, b);
         }
     }
 }

@@ -42,6 +42,10 @@ fn results() {
         let inverses = InverseBatch::new(Method::Damped { damping: 0.1 }, 6, n).unwrap();
         let found = inverses.inverses(&jacobians).unwrap();
         print(&format!("inverses of {name}"), &found.matrices);
+        let pseudoinverses = InverseBatch::new(Method::default(), 6, n).unwrap();
+        let found = pseudoinverses.inverses(&jacobians).unwrap();
+        print(&format!("pseudoinverses of {name}"), &found.matrices);
+        print(&format!("their singular values of {name}"), &found.singular_values);
     }
     let panda = catalogue::load("panda").unwrap();
     let mut servo = Servo::new(&panda, ServoOptions::new(&panda)).unwrap();

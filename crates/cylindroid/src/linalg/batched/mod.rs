@@ -15,7 +15,7 @@ mod values;
 
 pub(crate) use extremes::{End, extreme_eigenvalues, tridiagonal};
 pub(crate) use reflections::{Reflections, divide_by_upper};
-pub(crate) use values::singular_values;
+pub(crate) use values::{singular_values, sort_descending};
 
 pub(crate) use super::jacobi::round_robin_pairs;
 use crate::scalar::SimdFloat;

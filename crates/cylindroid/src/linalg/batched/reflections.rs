@@ -1,11 +1,11 @@
 //! QR decomposition by Householder reflections, batched and without pivoting.
 //!
-//! Formula  A = Q R by reflections; K the last columns of Q; Y = X R^-1
+//! Formula  A = Q R by reflections; K the last columns of Q; Y = X R^-1, X R^-T
 //! Shapes   A: n x columns, of which the first `steps` are reduced and the others transformed;
 //!          K: n x (n - steps); X, Y: any number of rows of R's size
 //! Checked  tests::agrees_with_single
 
-use super::{dot, reflect, reflector};
+use super::{add_times, dot, reflect, reflector};
 use crate::scalar::SimdFloat;
 
 /// What the first columns were reduced by.
@@ -39,13 +39,45 @@ impl<R: SimdFloat> Reflections<'_, R> {
     /// What is orthogonal to the columns that were reduced: orthonormal columns.
     #[inline(always)]
     pub(crate) fn complement(&self, out: &mut [R]) {
-        let (n, steps) = (self.n, self.diagonal.len());
+        self.columns_of_q(self.diagonal.len(), out);
+    }
+
+    /// An orthonormal basis of the columns that were reduced: as many columns.
+    #[inline(always)]
+    pub(crate) fn leading_columns(&self, out: &mut [R]) {
+        self.columns_of_q(0, out);
+    }
+
+    /// The columns of Q from the `first` on.
+    #[inline(always)]
+    fn columns_of_q(&self, first: usize, out: &mut [R]) {
+        let n = self.n;
         out.fill(R::splat(0.0));
         for (l, column) in out.chunks_exact_mut(n).enumerate() {
-            column[steps + l] = R::splat(1.0);
+            column[first + l] = R::splat(1.0);
         }
-        for j in (0..steps).rev() {
-            reflect(out, n, j, &self.columns[j * n + j..(j + 1) * n], self.factors[j]);
+        for j in (0..self.diagonal.len()).rev() {
+            // A reflection leaves unit vectors before its own.
+            let from = j.saturating_sub(first) * n;
+            let v = &self.columns[j * n + j..(j + 1) * n];
+            reflect(&mut out[from..], n, j, v, self.factors[j]);
+        }
+    }
+
+    /// Columns X, as many as were reduced and of length n, to `X R^-T`.
+    #[inline(always)]
+    pub(crate) fn divide_by_transpose(&self, x: &mut [R]) {
+        let n = self.n;
+        for (l, d) in self.diagonal.iter().enumerate().rev() {
+            let (before, own) = x.split_at_mut(l * n);
+            let own = &mut own[..n];
+            let inverse = R::splat(1.0) / *d;
+            for x in &mut *own {
+                *x = *x * inverse;
+            }
+            for (column, above) in before.chunks_exact_mut(n).zip(&self.columns[l * n..]) {
+                add_times(column, -*above, own);
+            }
         }
     }
 }
@@ -91,6 +123,10 @@ mod tests {
         all.run();
         let mut k = vec![zero; 7 * 3];
         all.complement(&mut k);
+        let mut q = vec![zero; 7 * 4];
+        all.leading_columns(&mut q);
+        let mut transposed = q.clone();
+        all.divide_by_transpose(&mut transposed);
         let mut rows = side_by_side(&four(2, 4, 8).map(|m| m.transpose()));
         divide_by_upper(&mut rows, &columns, 7, &diagonal);
         for (l, a) in a.iter().enumerate() {
@@ -111,6 +147,10 @@ mod tests {
             let y = Matrix::from_fn(2, 4, |i, j| rows[i * 4 + j].0[l]);
             let x = &four(2, 4, 8)[l];
             assert!((&y * &r).max_difference(x) < 1e-13);
+            // A = Q R and Q = Y R^T
+            let [q, y] = [&q, &transposed].map(|x| Matrix::from_fn(7, 4, |i, j| x[j * 7 + i].0[l]));
+            assert!((&q * &r).max_difference(a) < 1e-14);
+            assert!((&y * &r.transpose()).max_difference(&q) < 1e-13);
             let square = &r.transpose() * &r;
             assert!(square.max_difference(&(&a.transpose() * a)) < 1e-13);
         }

@@ -90,6 +90,18 @@ fn of_length<R: SimdFloat>(
     }
 }
 
+/// Largest first in each lane, by exchanges of neighbours: as many rounds as there are values.
+#[inline(always)]
+pub(crate) fn sort_descending<R: SimdFloat>(values: &mut [R]) {
+    for round in 0..values.len() {
+        for pair in values[round % 2..].chunks_exact_mut(2) {
+            let [a, b] = [pair[0], pair[1]];
+            pair[0] = R::select_lt(a, b, b, a);
+            pair[1] = R::select_lt(a, b, a, b);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::tests::{Four, four, side_by_side};
