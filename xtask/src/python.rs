@@ -65,7 +65,7 @@ pub(crate) fn source_distribution() -> Result<PathBuf> {
         fs::remove_dir_all(&folder)?;
     }
     let python = with_maturin()?;
-    run(Command::new(python).args(["-m", "maturin", "sdist", "--quiet", "--out"]).arg(&folder))?;
+    run(Command::new(python).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
     only_file(&folder)
 }
 

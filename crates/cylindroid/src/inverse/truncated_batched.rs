@@ -190,13 +190,7 @@ impl<R: SimdFloat> Scratch<R> {
         reflections.run();
         reflections.leading_columns(&mut self.basis);
         reflections.divide_by_transpose(&mut self.basis);
-        for (j, column) in self.triangle.chunks_exact_mut(k).enumerate() {
-            column[..j].fill(R::splat(0.0));
-            column[j] = self.diagonal[j];
-            for (i, x) in column.iter_mut().enumerate().skip(j + 1) {
-                *x = self.columns[i * long + j];
-            }
-        }
+        reflections.transposed_triangle(&mut self.triangle);
         singular_values(&mut self.triangle, k, pairs, &mut self.values);
         sort_descending(&mut self.values);
         if rows <= cols {

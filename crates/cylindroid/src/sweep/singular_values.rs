@@ -1,6 +1,7 @@
 //! Singular values of many Jacobians of one shape, batched.
 //!
-//! Formula  sigma(D_r J_t D_c): chosen rows J_t of J, scaled rows and columns
+//! Formula  sigma(D_r J_t D_c): chosen rows J_t of J, scaled rows and columns; by one-sided Jacobi
+//!          rotations of R^T, from reflections of the longer side
 //! Shapes   J: N x 6 x n, values: N x min(t, n), largest first; row-major
 //! Units    of the scaled Jacobian
 //! Valid    any rank: errors of one rounding of the largest value
@@ -8,7 +9,7 @@
 //!          depends neither on its place nor on the number of rows
 //! Checked  tests::agree_with_single, tests/sweep/parts.rs
 
-use crate::linalg::batched::{round_robin_pairs, singular_values, sort_descending};
+use crate::linalg::batched::{Reflections, round_robin_pairs, singular_values, sort_descending};
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Avx2, Avx512, Lanes4, Lanes8};
@@ -73,6 +74,8 @@ impl SingularValues {
         let size = 6 * n;
         let long = t.max(n);
         let mut columns = vec![R::splat(0.0); long * k];
+        let mut triangle = vec![R::splat(0.0); k * k];
+        let (mut diagonal, mut factors) = (vec![R::splat(0.0); k], vec![R::splat(0.0); k]);
         let mut values = vec![R::splat(0.0); k];
         let mut tail = vec![0.0; R::LANES * k];
         let mut entries = vec![R::splat(0.0); size];
@@ -95,7 +98,15 @@ impl SingularValues {
                     columns[place] = entries[row * n + j] * R::splat(scale * factor);
                 }
             }
-            singular_values(&mut columns, long, &self.pairs, &mut values);
+            let mut reflections = Reflections {
+                n: long,
+                columns: &mut columns,
+                diagonal: &mut diagonal,
+                factors: &mut factors,
+            };
+            reflections.run();
+            reflections.transposed_triangle(&mut triangle);
+            singular_values(&mut triangle, k, &self.pairs, &mut values);
             sort_descending(&mut values);
             if count == R::LANES {
                 R::scatter(&values, to, k);

@@ -64,6 +64,20 @@ impl<R: SimdFloat> Reflections<'_, R> {
         }
     }
 
+    /// R^T, columns: its singular values are those of the columns that were reduced, and its columns
+    /// are nearer to orthogonal.
+    #[inline(always)]
+    pub(crate) fn transposed_triangle(&self, out: &mut [R]) {
+        let k = self.diagonal.len();
+        for (j, column) in out.chunks_exact_mut(k).enumerate() {
+            column[..j].fill(R::splat(0.0));
+            column[j] = self.diagonal[j];
+            for (i, x) in column.iter_mut().enumerate().skip(j + 1) {
+                *x = self.columns[i * self.n + j];
+            }
+        }
+    }
+
     /// Columns X, as many as were reduced and of length n, to `X R^-T`.
     #[inline(always)]
     pub(crate) fn divide_by_transpose(&self, x: &mut [R]) {
@@ -127,6 +141,8 @@ mod tests {
         all.leading_columns(&mut q);
         let mut transposed = q.clone();
         all.divide_by_transpose(&mut transposed);
+        let mut triangle = vec![zero; 4 * 4];
+        all.transposed_triangle(&mut triangle);
         let mut rows = side_by_side(&four(2, 4, 8).map(|m| m.transpose()));
         divide_by_upper(&mut rows, &columns, 7, &diagonal);
         for (l, a) in a.iter().enumerate() {
@@ -147,6 +163,8 @@ mod tests {
             let y = Matrix::from_fn(2, 4, |i, j| rows[i * 4 + j].0[l]);
             let x = &four(2, 4, 8)[l];
             assert!((&y * &r).max_difference(x) < 1e-13);
+            let triangle = Matrix::from_fn(4, 4, |i, j| triangle[j * 4 + i].0[l]);
+            assert!(triangle.transpose() == r);
             // A = Q R and Q = Y R^T
             let [q, y] = [&q, &transposed].map(|x| Matrix::from_fn(7, 4, |i, j| x[j * 7 + i].0[l]));
             assert!((&q * &r).max_difference(a) < 1e-14);

@@ -67,7 +67,8 @@ impl ActiveSet {
         (contradicted + level.replace_residual()).sqrt()
     }
 
-    /// Minimises a damped level, then keeps its rows.
+    /// Minimises a damped level, then keeps its rows alone: the inequalities that stop it hold the
+    /// damped motion, and the levels after it may leave them with its rows as they are.
     pub(in crate::control) fn solve_damped(
         &mut self,
         level: &mut Level,
@@ -78,7 +79,7 @@ impl ActiveSet {
         level.scale = level.rows.frobenius_norm();
         self.minimise(Objective::Damped(level, damping), precision);
         self.stopping().for_each(stops);
-        self.keep(level, precision);
+        self.keep_rows(level);
     }
 
     /// Keeps the rows of a minimised level, and the inequalities that stop it, for the next levels.
@@ -102,7 +103,11 @@ impl ActiveSet {
         }
         self.fixed += strong;
         self.working.drain(..strong);
-        // Then the rows of the level, the largest remainder first.
+        self.keep_rows(level);
+    }
+
+    /// Keeps the rows of a level, the largest remainder first.
+    fn keep_rows(&mut self, level: &mut Level) {
         level.project(&self.basis, self.fixed);
         let scale = level.scale;
         for _ in 0..level.rows.rows() {
