@@ -56,15 +56,15 @@ impl PySweepSummary {
     }
 }
 
-/// Size and SHA-256 of a part, as Python has them.
+/// Size and checksum of a part, as Python has them.
 type Listed = (u64, String);
 
 fn to_part(listed: Listed) -> Part {
-    Part { bytes: listed.0, sha256: listed.1 }
+    Part { bytes: listed.0, checksum: listed.1 }
 }
 
 fn of_part(part: Part) -> Listed {
-    (part.bytes, part.sha256)
+    (part.bytes, part.checksum)
 }
 
 /// A folder of parts that several processes write, locked until `close`.
@@ -268,7 +268,7 @@ impl PySweepPlan {
         columns_of(py, self.own.checked(py, found)?)
     }
 
-    /// The file of a part: its bytes, their number and their SHA-256.
+    /// The file of a part: its bytes, their number and their checksum.
     #[pyo3(signature = (part))]
     fn part_file<'py>(
         &self,
@@ -278,6 +278,12 @@ impl PySweepPlan {
         let found = py.detach(|| self.sweep.part_file(part));
         let (part, bytes) = self.own.checked(py, found)?;
         Ok((PyBytes::new(py, &bytes), of_part(part)))
+    }
+
+    /// Size and checksum of a file that was read.
+    #[staticmethod]
+    fn listed(content: &[u8]) -> Listed {
+        of_part(Part::of(content))
     }
 
     /// Writes the file of a part, unless it is the one of `listed`; true if it was computed.

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import concurrent.futures
 import contextlib
-import hashlib
 import importlib
 import itertools
 import os
@@ -105,7 +104,7 @@ def _write_part(
     storage, name = _Uri(out), plan.part_name(part)
     if listed is not None and storage.exists(name):
         content = storage.read(name)
-        if (len(content), hashlib.sha256(content).hexdigest()) == listed:
+        if plan.listed(content) == listed:
             return listed, False
     content, own = plan.part_file(part)
     storage.write(name, content)

@@ -11,6 +11,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::checksum::Checksum;
 use super::recipe::Recipe;
 use super::table::Column;
 use crate::error::{Error, Result};
@@ -23,8 +24,16 @@ pub(super) const MANIFEST: &str = "manifest.json";
 pub struct Part {
     /// Size of the file (bytes).
     pub bytes: u64,
-    /// SHA-256 of the file, hexadecimal.
-    pub sha256: String,
+    /// XXH3 of the file, 128 bits, hexadecimal: what `xxhsum -H128` prints.
+    pub checksum: String,
+}
+
+impl Part {
+    /// A part with this content.
+    #[must_use]
+    pub fn of(content: &[u8]) -> Self {
+        Self { bytes: content.len() as u64, checksum: Checksum::of(content) }
+    }
 }
 
 /// The name of a part.
@@ -59,10 +68,10 @@ pub(super) fn parts(manifest: &Value, count: usize) -> Vec<Option<Part>> {
             .as_str()
             .and_then(|name| name.strip_prefix("part-")?.strip_suffix(".parquet")?.parse().ok());
         let own = number.and_then(|number: usize| parts.get_mut(number));
-        if let (Some(own), Some(bytes), Some(sha256)) =
-            (own, entry["bytes"].as_u64(), entry["sha256"].as_str())
+        if let (Some(own), Some(bytes), Some(checksum)) =
+            (own, entry["bytes"].as_u64(), entry["xxh128"].as_str())
         {
-            *own = Some(Part { bytes, sha256: sha256.to_owned() });
+            *own = Some(Part { bytes, checksum: checksum.to_owned() });
         }
     }
     parts
@@ -83,7 +92,7 @@ pub(super) fn text(
             "first_row": first,
             "rows": part_rows.min(rows - first),
             "bytes": part.bytes,
-            "sha256": part.sha256,
+            "xxh128": part.checksum,
         }))
     };
     let manifest = json!({

@@ -25,6 +25,7 @@
 
 mod axis;
 mod capability;
+mod checksum;
 mod closed_samples;
 mod collect;
 mod columns;

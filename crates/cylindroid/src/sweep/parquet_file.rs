@@ -19,10 +19,9 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use serde_json::json;
-use sha2::{Digest, Sha256};
 
+use super::checksum::Checksum;
 use super::manifest::{Part, cannot_write};
-use super::recipe::hexadecimal;
 use super::table::{Column, ColumnKind, Values};
 use crate::error::{Error, Result};
 
@@ -44,7 +43,7 @@ fn into_sink<W: Write + Send>(
     inner: W,
     (columns, values): (&[Column], &[Values]),
 ) -> Result<(Part, W)> {
-    let mut sink = Hashed { inner, hasher: Sha256::new(), bytes: 0, failed: None };
+    let mut sink = Summed { inner, checksum: Checksum::new(), bytes: 0, failed: None };
     let written = into(&mut sink, columns, values);
     if let Some(error) = sink.failed {
         return Err(cannot_write(path, &error));
@@ -54,39 +53,39 @@ fn into_sink<W: Write + Send>(
         action: "write",
         message: error.to_string(),
     })?;
-    let part = Part { bytes: sink.bytes, sha256: hexadecimal(&sink.hasher.finalize()) };
+    let part = Part { bytes: sink.bytes, checksum: sink.checksum.finish() };
     Ok((part, sink.inner))
 }
 
 /// The checksum of a file.
 pub(super) fn checksum(path: &Path) -> io::Result<Part> {
-    let (mut file, mut hasher, mut bytes) = (File::open(path)?, Sha256::new(), 0);
+    let (mut file, mut checksum, mut bytes) = (File::open(path)?, Checksum::new(), 0);
     let mut buffer = vec![0; 1 << 18];
     loop {
         let count = file.read(&mut buffer)?;
         if count == 0 {
             break;
         }
-        hasher.update(&buffer[..count]);
+        checksum.update(&buffer[..count]);
         bytes += count as u64;
     }
-    Ok(Part { bytes, sha256: hexadecimal(&hasher.finalize()) })
+    Ok(Part { bytes, checksum: checksum.finish() })
 }
 
 /// A file, or bytes in memory, and its checksum.
-struct Hashed<W> {
+struct Summed<W> {
     inner: W,
-    hasher: Sha256,
+    checksum: Checksum,
     bytes: u64,
     /// The first error, of which Parquet's keeps the text only.
     failed: Option<io::Error>,
 }
 
-impl<W: Write> Write for Hashed<W> {
+impl<W: Write> Write for Summed<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.inner.write_all(bytes) {
             Ok(()) => {
-                self.hasher.update(bytes);
+                self.checksum.update(bytes);
                 self.bytes += bytes.len() as u64;
                 Ok(bytes.len())
             }
@@ -121,7 +120,7 @@ fn schema(columns: &[Column]) -> std::result::Result<TypePtr, ParquetError> {
 }
 
 fn into<W: Write + Send>(
-    sink: &mut Hashed<W>,
+    sink: &mut Summed<W>,
     columns: &[Column],
     values: &[Values],
 ) -> std::result::Result<(), ParquetError> {

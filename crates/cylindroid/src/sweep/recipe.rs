@@ -5,12 +5,12 @@
 //!          configurations, quantities and their options. Threads are no cause
 //! Checked  tests/sweep/folder.rs::another_recipe_is_refused
 
-use std::fmt::{self, Display, Write};
+use std::fmt::{self, Display, Write as _};
 
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 
 use super::axis::Axis;
+use super::checksum::Checksum;
 use super::designs::{DesignSpace, Designs, ParameterRange};
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
@@ -73,8 +73,6 @@ impl Recipe {
     ) -> Self {
         let model = &designs.model;
         let parameters = model.parameters().iter().map(|p| (p.name.clone(), p.value.into()));
-        let mut hasher = Sha256::new();
-        hasher.update(model.text());
         let space = match &designs.space {
             DesignSpace::Grid(axes) => json!({"over": axes.iter().map(axis).collect::<Vec<_>>()}),
             DesignSpace::Samples { ranges, count, seed } => {
@@ -85,7 +83,7 @@ impl Recipe {
             }
         };
         self.0["designs"] = json!({
-            "file_checksum": hexadecimal(&hasher.finalize()),
+            "file_checksum": Checksum::of(model.text().as_bytes()),
             "parameters": parameters.collect::<serde_json::Map<String, Value>>(),
             "space": space,
         });
@@ -136,27 +134,20 @@ fn source(source: &Source) -> Value {
             "rolls": grid.rolls,
         }),
         Source::Configurations(q) => {
-            let mut hasher = Sha256::new();
-            q.iter().for_each(|x| hasher.update(x.to_le_bytes()));
-            json!({"checksum": hexadecimal(&hasher.finalize())})
+            let mut checksum = Checksum::new();
+            q.iter().for_each(|x| checksum.update(&x.to_le_bytes()));
+            json!({"checksum": checksum.finish()})
         }
     }
 }
 
 /// Of joints, loops, contacts and frames with all their numbers.
 fn checksum_of(mechanism: &Mechanism) -> String {
-    struct Sink(Sha256);
-    impl Write for Sink {
-        fn write_str(&mut self, text: &str) -> fmt::Result {
-            self.0.update(text.as_bytes());
-            Ok(())
-        }
-    }
-    let mut sink = Sink(Sha256::new());
+    let mut checksum = Checksum::new();
     let m = mechanism;
     // Writing into a hash cannot fail.
     let _ = write!(
-        sink,
+        checksum,
         "{:?} {:?} {:?} {:?} {:?} {:?}",
         m.joints(),
         m.loops(),
@@ -165,12 +156,5 @@ fn checksum_of(mechanism: &Mechanism) -> String {
         m.frames(),
         m.home()
     );
-    hexadecimal(&sink.0.finalize())
-}
-
-pub(super) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
+    checksum.finish()
 }
