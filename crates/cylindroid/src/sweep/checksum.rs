@@ -3,7 +3,7 @@
 //! Valid    against accidents: whoever wants another file with the same checksum finds one
 //! Why so   SHA-256 took a third of the time of a sweep; `xxhsum -H128` verifies this one
 //! Source   Collet, xxHash, XXH3
-//! Checked  tests::published_values, cylindroid-py/tests/test_sweep.py::test_folders
+//! Checked  tests::published_values
 
 use std::fmt;
 

@@ -19,6 +19,7 @@ calls! {
     sweep::Optimisation::new;
     sweep::Optimisation::run = |o: &'static Optimisation, threads: Option<NonZeroUsize>, go_on: bool| o.run(threads, |_| go_on);
     sweep::Optimisation::units;
+    sweep::Part::of = |text: &'static str| Part::of(text.as_bytes());
     sweep::Quantity::description;
     sweep::Quantity::name;
     sweep::Quantity::named;
