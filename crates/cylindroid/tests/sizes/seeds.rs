@@ -449,7 +449,7 @@ fn sweeps(world: &mut World) {
     all(world, &[Quantity::Pose, Quantity::Measures]);
     all(world, &[VelocityMetric::Unit, VelocityMetric::Limits]);
     all(world, &[WriteOptions::default(), WriteOptions { resume: true, ..Default::default() }]);
-    all(world, &[Part { bytes: 0, sha256: String::new() }]);
+    all(world, &[Part { bytes: 0, checksum: String::new() }]);
     all(world, &[LocusKind::TypeOne, LocusKind::Limit]);
     all(world, &[Statistic::Mean]);
     all(world, &[Sense::Minimise]);
