@@ -19,7 +19,9 @@ use crate::linalg::{Matrix, Rank, Svd, run_all};
 ///
 /// Calls with more than [`InverseBatch::CHUNK`] of them use the threads of rayon
 /// (`RAYON_NUM_THREADS`, or
-/// `ThreadPool::install` around the call); results do not depend on how many there are.
+/// `ThreadPool::install` around the call); results do not depend on how many there are. Each inverse
+/// is that of [`Method::inverse`]: of [`Method::Truncated`] to rounding, of the other methods to the
+/// bit.
 ///
 /// ```
 /// use cylindroid::inverse::InverseBatch;

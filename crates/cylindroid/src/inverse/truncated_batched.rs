@@ -115,10 +115,9 @@ impl Kernel {
                 R::gather(from, size, &mut scratch.entries);
             } else {
                 // Lanes that are left over repeat the last Jacobian.
-                for (lane, own) in rest.chunks_exact_mut(size).enumerate() {
-                    own.copy_from_slice(&from[lane.min(count - 1) * size..][..size]);
+                for (c, x) in scratch.entries.iter_mut().enumerate() {
+                    *x = R::from_fn(|lane| from[lane.min(count - 1) * size + c]);
                 }
-                R::gather(rest, size, &mut scratch.entries);
             }
             scratch.invert(rows, cols, &self.pairs);
             if count == R::LANES {

@@ -79,17 +79,15 @@ impl SingularValues {
         let mut values = vec![R::splat(0.0); k];
         let mut tail = vec![0.0; R::LANES * k];
         let mut entries = vec![R::splat(0.0); size];
-        let mut rest = vec![0.0; R::LANES * size];
         for (from, to) in jacobians.chunks(R::LANES * size).zip(out.chunks_mut(R::LANES * k)) {
             let count = from.len() / size;
             if count == R::LANES {
                 R::gather(from, size, &mut entries);
             } else {
                 // Lanes that are left over repeat the last Jacobian.
-                for (lane, own) in rest.chunks_exact_mut(size).enumerate() {
-                    own.copy_from_slice(&from[lane.min(count - 1) * size..][..size]);
+                for (c, x) in entries.iter_mut().enumerate() {
+                    *x = R::from_fn(|lane| from[lane.min(count - 1) * size + c]);
                 }
-                R::gather(&rest, size, &mut entries);
             }
             for (i, (row, scale)) in self.rows.iter().enumerate() {
                 for (j, factor) in self.columns.iter().enumerate() {

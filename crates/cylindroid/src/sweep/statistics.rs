@@ -80,16 +80,18 @@ impl Sum {
         for (lane, x) in rest.iter().enumerate() {
             add(lane, *x);
         }
-        let mut own = (f64::INFINITY, 0.0, f64::NEG_INFINITY, 0);
+        let finite: u64 = lanes.iter().map(|lane| lane.3).sum();
+        let mut own = Self::Numbers {
+            smallest: f64::INFINITY,
+            sum: 0.0,
+            largest: f64::NEG_INFINITY,
+            finite: 0,
+            not_finite: all.len() as u64 - finite,
+        };
         for (smallest, sum, largest, finite) in lanes {
-            own.0 = own.0.min(smallest);
-            own.1 += sum;
-            own.2 = own.2.max(largest);
-            own.3 += finite;
+            own.add(&Self::Numbers { smallest, sum, largest, finite, not_finite: 0 });
         }
-        let (smallest, sum, largest, finite) = own;
-        let not_finite = all.len() as u64 - finite;
-        Self::Numbers { smallest, sum, largest, finite, not_finite }
+        own
     }
 
     fn count(&mut self, text: &'static str, times: u64) {

@@ -163,6 +163,52 @@ fn levels_are_the_optima_of_clarabel() {
 }
 
 /// The nearest point of the polyhedron is nearer than any other point found.
+/// A damped level keeps its rows and nothing else: what comes after it is the optimum of Clarabel with
+/// these rows alone, also where the damped motion stood at inequalities.
+#[test]
+fn damped_levels_keep_their_rows_alone() {
+    let mut random = Random::seeded(13);
+    let (mut compared, mut left) = (0, 0);
+    for round in 0..2000 {
+        let mut problem = Problem::random(&mut random);
+        let n = problem.n;
+        let desired: Vec<f64> = (0..n).map(|_| random.signed()).collect();
+        problem.levels.truncate(1);
+        problem.levels.push((Matrix::identity(n), desired.clone()));
+        let mut set = problem.active_set();
+        assert!(set.start(&vec![0.0; n]), "round {round}");
+        let (a, b) = &problem.levels[0];
+        let mut level = Level::new(a.rows(), n);
+        level.rows = a.clone();
+        level.target.copy_from_slice(b);
+        let mut stops = Vec::new();
+        set.solve_damped(&mut level, 0.1, Precision::EXACT, |(row, _)| stops.push(row));
+        let damped = set.point().to_vec();
+        let values = a.mul_vec(&damped);
+        let kept: Vec<(Vec<f64>, f64)> = a.to_rows().into_iter().zip(values).collect();
+        set.approach(&desired, Precision::EXACT);
+        problem.assert_feasible(set.point(), "after the damped level");
+        for (row, value) in &kept {
+            let now: f64 = row.iter().zip(set.point()).map(|(a, b)| a * b).sum();
+            assert!((now - value).abs() < 1e-9 * (1.0 + value.abs()), "round {round}");
+        }
+        let Some(other) = problem.referee(1, &kept, None) else { continue };
+        if violation(&problem, &kept, &other) > 1e-9 {
+            continue;
+        }
+        compared += 1;
+        let distance = |y: &[f64]| residual(&Matrix::identity(n), &desired, y);
+        let (own, theirs) = (distance(set.point()), distance(&other));
+        assert!(own < theirs + 1e-7 * (1.0 + theirs), "round {round}: {own} and {theirs}");
+        let value = |y: &[f64], row: usize| -> f64 {
+            problem.rows[row].iter().zip(y).map(|(a, b)| a * b).sum()
+        };
+        let moved = |row: &usize| (value(set.point(), *row) - value(&damped, *row)).abs() > 1e-6;
+        left += u32::from(stops.iter().any(moved));
+    }
+    assert!(compared > 500 && left > 50, "{compared} compared, {left} left inequalities");
+}
+
 #[test]
 fn the_start_is_the_nearest_feasible_point() {
     let mut random = Random::seeded(5);
