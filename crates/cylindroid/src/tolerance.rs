@@ -406,6 +406,10 @@ pub const PLATFORM_SINGULAR: f64 = 1e-4;
 /// roundings.
 pub const LOCUS_MET: f64 = 1e-12;
 
+/// Relative singular value of the equations of a locus [-] below which its points have a neighbour in
+/// a further direction: above the error of their second derivatives.
+pub const SURFACE_RANK: f64 = 1e-7;
+
 /// Step in scaled coordinates (rad) of the second derivatives of loops, which only direct Newton's
 /// method: their error is then 1e-10.
 pub const LOCUS_STEP: f64 = 1e-5;

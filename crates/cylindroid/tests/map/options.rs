@@ -27,6 +27,35 @@ fn a_serial_arm_has_a_ring() {
     }
 }
 
+/// Where the tip is on the first axis, that joint turns and nothing else moves: one curve for each
+/// elbow, not one for each angle of the joint.
+#[test]
+fn self_motions_are_one_curve() {
+    let arm = catalogue::load("3r").unwrap();
+    let map = map(&arm, vec![axis("x", -1.01, 1.0, 41), axis("z", -0.52, 1.3, 41)]);
+    let of_kind = map.loci.iter().filter(|l| l.kind == LocusKind::TypeOne);
+    let (on_axis, others): (Vec<_>, Vec<_>) =
+        of_kind.partition(|l| l.points.iter().all(|p| p[0].abs() < 1e-9));
+    assert!((2..=4).contains(&on_axis.len()), "{}", on_axis.len());
+    let heights = || on_axis.iter().flat_map(|l| &l.points).map(|p| p[1]);
+    let (lowest, highest) =
+        (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+    assert!((lowest + 0.4).abs() < 1e-3 && (highest - 1.2).abs() < 1e-3, "{lowest} {highest}");
+    let points: usize = map.loci.iter().map(|l| l.points.len()).sum();
+    assert!(points < 10_000, "{points} points in {} curves", map.loci.len());
+    for locus in on_axis.iter().chain(&others) {
+        for (q, point) in locus.q.iter().zip(&locus.points) {
+            let jacobian =
+                arm.state(q).unwrap().jacobian(arm.tool(), cylindroid::ReferenceFrame::World);
+            let tip = arm.state(q).unwrap().pose(arm.tool()).translation;
+            assert!((tip.x - point[0]).abs() < 1e-9 && (tip.z - point[1]).abs() < 1e-9);
+            assert!(jacobian.cols() == 3 && tip.y.abs() < 1e-9);
+            let sine = q[2].sin();
+            assert!((0.16 * sine * tip.x.hypot(tip.y)).abs() < 1e-8, "{q:?}");
+        }
+    }
+}
+
 /// A horizontal slice of a Stewart platform: everything else is held.
 #[test]
 fn a_stewart_platform_keeps_its_height() {

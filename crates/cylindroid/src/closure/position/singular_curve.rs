@@ -7,7 +7,8 @@
 //! Shapes   x: m coordinates, [J; grad g]: (t + 1) x m of generic rank m - 1
 //! Units    none: lengths are divided by the characteristic length
 //! Valid    where g changes its sign or falls to zero with the distance. Curves that cross are followed
-//!          straight on
+//!          straight on. Where a singular motion goes on (a finite self-motion: an arm whose tip is on
+//!          its first axis), what vanishes is a surface; it is crossed at right angles to that motion
 //! Fails    where the curve has a corner; it ends there
 //! Why so   a contour of a grid is as accurate as its cells; the smallest singular value with fixed
 //!          singular vectors is smooth and needs no derivative of a determinant
@@ -20,11 +21,11 @@ use super::coordinates::{columns, largest_change, moved};
 use super::loop_equations::LoopEquations;
 use super::signed_singularity::SignedSingularity;
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd, norm};
-use crate::model::Mechanism;
+use crate::linalg::{Matrix, Svd, dot, norm};
+use crate::model::{CoordinateKind, Mechanism};
 use crate::scalar::clamp;
 use crate::spatial::Vec3;
-use crate::tolerance::{LIMIT_MET, LOCUS_MET, LOCUS_STEP};
+use crate::tolerance::{LIMIT_MET, LOCUS_AT_REST, LOCUS_MET, LOCUS_STEP, SURFACE_RANK};
 
 /// Maximum number of Newton steps.
 const MAX_NEWTON: usize = 25;
@@ -36,6 +37,8 @@ const STEPS: (f64, f64) = (1e-9, 0.1);
 const STEPS_OF_BOX: f64 = 200.0;
 /// Cosine of the largest turn of the tangent within a step.
 const TURN: f64 = 0.99;
+/// Length of a part of a self-motion by which it is known.
+const SELF_MOTION: f64 = 0.05;
 /// Halvings that find the end of a curve at the boundary of its domain.
 const HALVINGS: usize = 60;
 
@@ -60,7 +63,17 @@ pub(crate) struct CurveDomain {
 pub(crate) struct Curve {
     pub(crate) points: Vec<Vec<f64>>,
     landmarks: Vec<Vec<Vec3>>,
+    /// True if each point is one of a self-motion.
+    self_motion: bool,
     pub(crate) closed: bool,
+}
+
+/// A point of a curve and its place among others of the curve.
+#[derive(Debug, Clone)]
+pub(crate) struct Seed {
+    pub(crate) q: Vec<f64>,
+    landmarks: Vec<Vec3>,
+    self_motion: bool,
 }
 
 /// Follows curves.
@@ -73,6 +86,8 @@ pub(crate) struct CurveTracer {
     /// Generic rank of the loops over the unknown.
     rank: usize,
     marks: Landmarks,
+    /// True while a surface of self-motions is crossed.
+    self_motion: bool,
 }
 
 /// A point on a curve with the decomposition of the system there.
@@ -80,12 +95,15 @@ pub(super) struct CurvePoint {
     pub(super) q: Vec<f64>,
     a: Matrix,
     svd: Svd,
+    /// The singular motion that goes on, of the unknown, while such a surface is crossed.
+    motion: Option<Vec<f64>>,
 }
 
 impl Curve {
-    /// True if the curve passes through the configuration with these landmarks.
-    pub(crate) fn passes(&self, at: &[Vec3]) -> bool {
-        self.landmarks.windows(2).any(|ends| on_segment(at, &ends[0], &ends[1]))
+    /// True if the curve passes through a point, or through another one of its self-motion.
+    pub(crate) fn passes(&self, seed: &Seed) -> bool {
+        let on_curve = |ends: &[Vec<Vec3>]| on_segment(&seed.landmarks, &ends[0], &ends[1]);
+        self.self_motion == seed.self_motion && self.landmarks.windows(2).any(on_curve)
     }
 }
 
@@ -111,7 +129,7 @@ impl CurveTracer {
         (unknown, rank): (Vec<usize>, usize),
     ) -> Self {
         let marks = Landmarks::of(equations.mechanism());
-        Self { equations, vanishing, domain, unknown, rank, marks }
+        Self { equations, vanishing, domain, unknown, rank, marks, self_motion: false }
     }
 
     pub(crate) fn set_side(&mut self, side: Option<(SignedSingularity, f64)>) {
@@ -136,16 +154,56 @@ impl CurveTracer {
         self.equations.unit(coordinate)
     }
 
-    /// The landmarks of a configuration.
-    pub(crate) fn landmarks(&mut self, q: &[f64]) -> Result<Vec<Vec3>> {
-        self.equations.set(q)?;
-        Ok(self.marks.at(&link_poses(self.equations.state())))
+    /// The landmarks of a configuration; within a self-motion its coordinates that rest.
+    fn landmarks(&mut self, q: &[f64]) -> Result<Vec<Vec3>> {
+        if !self.self_motion {
+            self.equations.set(q)?;
+            return Ok(self.marks.at(&link_poses(self.equations.state())));
+        }
+        let motion = self.motion(q)?;
+        let coordinates = self.equations.mechanism().coordinates();
+        let place = |i: usize| {
+            if motion[i].abs() > LOCUS_AT_REST {
+                Vec3::ZERO
+            } else if coordinates[i].kind == CoordinateKind::Angle {
+                // Whole turns are no difference.
+                Vec3::new(q[i].cos(), q[i].sin(), 0.0)
+            } else {
+                Vec3::new(q[i] / self.unit(i), 0.0, 0.0)
+            }
+        };
+        Ok((0..q.len()).map(place).collect())
     }
 
-    /// The point of the curve nearest to a seed, if Newton's method finds one in the domain.
-    pub(crate) fn refine(&mut self, seed: &[f64]) -> Result<Option<Vec<f64>>> {
-        let Some(point) = self.corrected(seed.to_vec())? else { return Ok(None) };
-        Ok(self.contains(&point.q)?.then_some(point.q))
+    /// The point of the curve nearest to a guess, if Newton's method finds one in the domain.
+    pub(crate) fn refine(&mut self, guess: &[f64]) -> Result<Option<Seed>> {
+        self.self_motion = false;
+        let Some(point) = self.corrected(guess.to_vec())? else { return Ok(None) };
+        if !self.contains(&point.q)? {
+            return Ok(None);
+        }
+        self.self_motion = self.moves_on(&point)?;
+        let landmarks = self.landmarks(&point.q)?;
+        Ok(Some(Seed { q: point.q, landmarks, self_motion: self.self_motion }))
+    }
+
+    /// True if the singular motion at a point leads to other points, the bounded coordinates at rest.
+    fn moves_on(&mut self, at: &CurvePoint) -> Result<bool> {
+        if self.rank_of(&at.svd) > self.rank {
+            return Ok(false);
+        }
+        let motion = self.motion_of_unknown(&at.q)?;
+        if motion.iter().all(|x| *x == 0.0) {
+            return Ok(false);
+        }
+        let change: Vec<f64> = motion.iter().map(|x| SELF_MOTION * x).collect();
+        let guess = moved(self.equations.mechanism(), &at.q, &self.unknown, &change);
+        let Some(other) = self.corrected(guess.clone())? else { return Ok(false) };
+        let rests = |&(i, ..): &(usize, f64, f64)| {
+            (other.q[i] - at.q[i]).abs() <= LOCUS_AT_REST * self.unit(i)
+        };
+        Ok(self.apart(&other.q, &guess) <= 0.2 * SELF_MOTION
+            && self.domain.bounds.iter().all(rests))
     }
 
     /// The singular vector of the vanishing value at a configuration, of all coordinates and scaled;
@@ -164,8 +222,16 @@ impl CurveTracer {
         Ok(motion)
     }
 
+    /// [`Self::motion`] of the unknown.
+    fn motion_of_unknown(&mut self, q: &[f64]) -> Result<Vec<f64>> {
+        let motion = self.motion(q)?;
+        Ok(self.unknown.iter().map(|&i| motion[i]).collect())
+    }
+
     /// The whole curve through a point on it, within the domain.
-    pub(crate) fn trace(&mut self, from: &[f64]) -> Result<Curve> {
+    pub(crate) fn trace(&mut self, seed: &Seed) -> Result<Curve> {
+        self.self_motion = seed.self_motion;
+        let from = &seed.q;
         let mut curve = self.half(from, 1.0)?;
         if !curve.closed {
             let mut back = self.half(from, -1.0)?;
@@ -177,6 +243,7 @@ impl CurveTracer {
             back.landmarks.append(&mut curve.landmarks);
             curve = back;
         }
+        curve.self_motion = seed.self_motion;
         Ok(curve)
     }
 
@@ -250,17 +317,18 @@ impl CurveTracer {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
         let guess = moved(self.equations.mechanism(), &here.q, &self.unknown, &change);
         let Some(point) = self.corrected(guess.clone())? else { return Ok(None) };
-        let apart: f64 = self
-            .unknown
-            .iter()
-            .map(|&i| ((point.q[i] - guess[i]) / self.equations.unit(i)).powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let apart = self.apart(&point.q, &guess);
         let next = self.tangent(&point, tangent);
         let turned: f64 = next.iter().zip(tangent).map(|(a, b)| a * b).sum();
         // Rotation vectors may come back as equivalent ones.
         let near = apart <= 0.2 * step || apart > 1.0;
         Ok((near && turned >= TURN).then_some((point, next)))
+    }
+
+    /// The distance of two configurations over the unknown.
+    fn apart(&self, a: &[f64], b: &[f64]) -> f64 {
+        let square = |&i: &usize| ((a[i] - b[i]) / self.unit(i)).powi(2);
+        self.unknown.iter().map(square).sum::<f64>().sqrt()
     }
 
     /// The longest step: a share of the box along each of its axes.
@@ -328,10 +396,21 @@ impl CurveTracer {
         projected.iter().map(|x| x / size).collect()
     }
 
-    /// The part of a vector in the kernel.
+    /// The part of a vector in the kernel, without the self-motion.
     pub(super) fn projected(&self, at: &CurvePoint, x: &[f64]) -> Vec<f64> {
-        let back = at.svd.solve(&at.a.mul_vec(x), self.rank + 1);
-        x.iter().zip(back).map(|(x, y)| x - y).collect()
+        let rank = if at.motion.is_some() { self.rank } else { self.rank + 1 };
+        let back = at.svd.solve(&at.a.mul_vec(x), rank);
+        let mut kernel: Vec<f64> = x.iter().zip(back).map(|(x, y)| x - y).collect();
+        if let Some(motion) = &at.motion {
+            let along = dot(&kernel, motion) / dot(motion, motion).max(f64::MIN_POSITIVE);
+            kernel.iter_mut().zip(motion).for_each(|(x, m)| *x -= along * m);
+        }
+        kernel
+    }
+
+    /// Rank of the system of a point, at most what it has on a curve.
+    fn rank_of(&self, svd: &Svd) -> usize {
+        svd.rank(SURFACE_RANK).rank.min(self.rank + 1)
     }
 
     /// Newton's method of least norm from a guess.
@@ -342,9 +421,11 @@ impl CurveTracer {
             let open = norm(&b[..b.len() - 1]);
             let value = b.last().map_or(0.0, |x| x.abs());
             if open <= LOCUS_MET && value <= LOCUS_MET {
-                return Ok(Some(CurvePoint { q, a, svd }));
+                let motion = self.self_motion.then(|| self.motion_of_unknown(&q)).transpose()?;
+                return Ok(Some(CurvePoint { q, a, svd, motion }));
             }
-            let mut change = svd.solve(&b, self.rank + 1);
+            let mut change =
+                svd.solve(&b, if self.self_motion { self.rank } else { self.rank + 1 });
             let size = largest_change(self.equations.mechanism(), &self.unknown, &change);
             let factor = if size > STEPS.1 { -STEPS.1 / size } else { -1.0 };
             change.iter_mut().for_each(|x| *x *= factor);

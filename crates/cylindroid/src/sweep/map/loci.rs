@@ -29,17 +29,16 @@ struct Family {
 }
 
 impl Family {
-    fn add(&mut self, mode: usize, seed: &[f64]) -> Result<()> {
-        let Some(q) = self.tracer.refine(seed)? else { return Ok(()) };
-        let at = self.tracer.landmarks(&q)?;
-        let known = self.curves.iter().position(|curve| curve.passes(&at));
+    fn add(&mut self, mode: usize, guess: &[f64]) -> Result<()> {
+        let Some(seed) = self.tracer.refine(guess)? else { return Ok(()) };
+        let known = self.curves.iter().position(|curve| curve.passes(&seed));
         if let Some(known) = known {
             if !self.modes[known].contains(&mode) {
                 self.modes[known].push(mode);
             }
             return Ok(());
         }
-        let curve = self.tracer.trace(&q)?;
+        let curve = self.tracer.trace(&seed)?;
         if curve.points.len() > 1 {
             self.curves.push(curve);
             self.modes.push(vec![mode]);
