@@ -4,7 +4,8 @@ use std::io::{self, Write};
 
 use cylindroid::Mechanism;
 use cylindroid::ik::Analytic;
-use cylindroid::model::{Joint, Parameter};
+use cylindroid::model::formats::srdf;
+use cylindroid::model::{Ignored, Joint, Parameter};
 use serde::Serialize;
 
 use crate::args::InfoArgs;
@@ -131,6 +132,9 @@ struct ReportJson<'a> {
     format: &'a str,
     source: &'a str,
     ignored: Vec<IgnoredJson<'a>>,
+    /// Of the SRDF, if one is named.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ignored_of_srdf: Vec<IgnoredJson<'a>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -140,9 +144,17 @@ struct IgnoredJson<'a> {
     why: &'a str,
 }
 
+impl<'a> From<&'a Ignored> for IgnoredJson<'a> {
+    fn from(i: &'a Ignored) -> Self {
+        Self { line: i.line, what: &i.what, why: &i.why }
+    }
+}
+
 pub(crate) fn run(args: &InfoArgs, style: Style, out: &mut dyn Write) -> anyhow::Result<Exit> {
     let robot = limited(load(&args.model, &[])?, &args.limits)?;
-    let info = describe(&robot);
+    let srdf = args.model.srdf.as_deref().map(srdf::load).transpose()?.unwrap_or_default();
+    let mut info = describe(&robot);
+    info.report.ignored_of_srdf = srdf.report.ignored.iter().map(IgnoredJson::from).collect();
     match style {
         Style::Json => output::json(out, &info)?,
         Style::Table => print(out, &robot, &info)?,
@@ -196,7 +208,6 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
         friction: c.friction,
     });
     let reference = robot.frame_of(robot.reference());
-    let ignored = robot.report().ignored.iter();
     let (structure, reason) = match Analytic::of(robot, robot.tool()) {
         Ok(analytic) => (Some(analytic.geometry().to_string()), None),
         Err(reason) => (None, Some(reason.to_string())),
@@ -226,9 +237,8 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
         report: ReportJson {
             format: robot.report().format,
             source: &robot.report().source,
-            ignored: ignored
-                .map(|i| IgnoredJson { line: i.line, what: &i.what, why: &i.why })
-                .collect(),
+            ignored: robot.report().ignored.iter().map(IgnoredJson::from).collect(),
+            ignored_of_srdf: Vec::new(),
         },
     }
 }
@@ -288,15 +298,25 @@ fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow:
         print_coordinates(out, info, robot)?;
     }
     print_parameters(out, &info.parameters)?;
-    if !info.report.ignored.is_empty() {
-        writeln!(out, "\nignored by the loader")?;
-        let columns = [("line", Align::Right), ("what", Align::Left), ("why", Align::Left)];
-        let rows = info.report.ignored.iter().map(|i| {
-            let line = if i.line == 0 { "-".to_owned() } else { i.line.to_string() };
-            vec![line, i.what.to_owned(), i.why.to_owned()]
-        });
-        output::table(out, &columns, rows)?;
+    print_ignored(out, "ignored by the loader", &info.report.ignored)?;
+    print_ignored(out, "ignored of the SRDF", &info.report.ignored_of_srdf)
+}
+
+fn print_ignored(
+    out: &mut dyn Write,
+    title: &str,
+    ignored: &[IgnoredJson<'_>],
+) -> anyhow::Result<()> {
+    if ignored.is_empty() {
+        return Ok(());
     }
+    writeln!(out, "\n{title}")?;
+    let columns = [("line", Align::Right), ("what", Align::Left), ("why", Align::Left)];
+    let rows = ignored.iter().map(|i| {
+        let line = if i.line == 0 { "-".to_owned() } else { i.line.to_string() };
+        vec![line, i.what.to_owned(), i.why.to_owned()]
+    });
+    output::table(out, &columns, rows)?;
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cylindroid::model::formats;
+use cylindroid::model::{LoadReport, formats};
 use cylindroid::{Mechanism, ParametricModel};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -166,6 +166,13 @@ impl PyLoadReport {}
 
 table::shown!(PyLoadReport);
 
+impl From<&LoadReport> for PyLoadReport {
+    fn from(report: &LoadReport) -> Self {
+        let ignored = report.ignored.iter().map(|i| (i.line, i.what.clone(), i.why.clone()));
+        Self { format: report.format, source: report.source.clone(), ignored: ignored.collect() }
+    }
+}
+
 impl PyLoadReport {
     fn table(&self) -> Table {
         let mut table = Table::new("LoadReport");
@@ -183,15 +190,6 @@ impl PyLoadReport {
 impl PyMechanism {
     #[getter]
     fn report(&self) -> PyLoadReport {
-        let report = self.inner.report();
-        PyLoadReport {
-            format: report.format,
-            source: report.source.clone(),
-            ignored: report
-                .ignored
-                .iter()
-                .map(|i| (i.line, i.what.clone(), i.why.clone()))
-                .collect(),
-        }
+        PyLoadReport::from(self.inner.report())
     }
 }

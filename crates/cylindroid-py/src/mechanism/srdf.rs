@@ -7,7 +7,7 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use super::{Origin, PyMechanism};
+use super::{Origin, PyLoadReport, PyMechanism};
 use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 
@@ -28,6 +28,8 @@ use crate::error::{Result, argument};
 ///     Name of each end effector and the link that carries it.
 /// disabled_collisions : list of tuple of str
 ///     Pairs of links.
+/// report : LoadReport
+///     The elements and attributes that were not read.
 ///
 /// Raises
 /// ------
@@ -92,6 +94,11 @@ impl PySrdf {
     #[getter]
     fn disabled_collisions(&self) -> Vec<(&str, &str)> {
         self.inner.disabled.iter().map(|[a, b]| (a.as_str(), b.as_str())).collect()
+    }
+
+    #[getter]
+    fn report(&self) -> PyLoadReport {
+        PyLoadReport::from(&self.inner.report)
     }
 
     /// The movable joints of a group that follow no others, in the order of the robot.

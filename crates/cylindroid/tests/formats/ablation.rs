@@ -1,6 +1,10 @@
 //! No number of a file is ignored silently: a file with one number changed gives another mechanism,
 //! or an error, or its report names the place.
 
+use std::path::Path;
+
+use cylindroid::model::Ignored;
+use cylindroid::model::formats::srdf;
 use cylindroid::{Mechanism, Result};
 
 use crate::mjcf::read_mjcf;
@@ -32,8 +36,14 @@ fn content(m: &Mechanism) -> String {
 }
 
 fn ablate(name: &str, text: &str, read: impl Fn(&str) -> Result<Mechanism>) {
-    let m = read(text).unwrap();
-    let whole = content(&m);
+    ablate_content(name, text, |text| {
+        read(text).map(|m| (content(&m), m.report().ignored.clone()))
+    });
+}
+
+/// The same for anything that is read: its content, and what was ignored.
+fn ablate_content(name: &str, text: &str, read: impl Fn(&str) -> Result<(String, Vec<Ignored>)>) {
+    let (whole, _) = read(text).unwrap();
     let mut silent = Vec::new();
     for range in numbers(text) {
         let x: f64 = text[range.clone()].parse().unwrap();
@@ -44,7 +54,7 @@ fn ablate(name: &str, text: &str, read: impl Fn(&str) -> Result<Mechanism>) {
             read(&changed).ok()
         });
         let [Some(m), Some(b), Some(c), Some(d)] = others else { continue };
-        let same = [&m, &b, &c, &d].iter().all(|m| content(m) == whole);
+        let same = [&m, &b, &c, &d].iter().all(|(content, _)| *content == whole);
         let line = text[..range.start].matches('\n').count() + 1;
         // Notes of the same kind are one, with the line of the first; a note of an element is one
         // of all that it contains.
@@ -57,9 +67,7 @@ fn ablate(name: &str, text: &str, read: impl Fn(&str) -> Result<Mechanism>) {
         // The version of a format is no property of the robot.
         let is_version = key == Some("version");
         let noted = is_version
-            || m.report()
-                .ignored
-                .iter()
+            || (m.1.iter())
                 .any(|i| i.line == line || says.iter().any(|s| i.what.contains(s.as_str())));
         if same && !noted {
             let start = text[..range.start].rfind('\n').map_or(0, |i| i + 1);
@@ -194,6 +202,64 @@ fn no_number_of_an_mjcf_is_silent() {
     ablate("zoo.xml", &lines(include_str!("../data/zoo.xml")), read_mjcf);
     ablate("loops.xml", &lines(include_str!("../data/loops.xml")), read_mjcf);
     ablate("copies.xml", &lines(include_str!("../data/copies.xml")), read_mjcf);
+}
+
+/// Sizes, poses and gears that a shape or a joint does not have; axes of joints without one.
+#[test]
+fn no_number_without_a_meaning_is_silent() {
+    let geom = |attributes: &str| {
+        format!(
+            "<mujoco><worldbody><body name='a'><joint name='j' type='hinge' axis='0 1 2'/>\
+             <geom {attributes}/></body></worldbody></mujoco>"
+        )
+    };
+    for attributes in [
+        "type='sphere' size='1 2 3'",
+        "type='capsule' size='1 2 3'",
+        "type='capsule' size='1 2 3' fromto='0 0 1 2 3 4' pos='1 2 3' euler='1 2 3'",
+        "type='box' size='1 2 3' fromto='0 0 1 2 3 4' quat='1 2 3 4'",
+        "type='cylinder' size='1 2' pos='1 2 3' axisangle='1 2 3 4'",
+        "type='plane' size='1 2 3'",
+    ] {
+        ablate(attributes, &lines(&geom(attributes)), read_mjcf);
+    }
+    let motor = "<mujoco><worldbody><body name='a'><joint name='j' type='hinge' axis='0 1 2'/>\
+                 <geom size='1'/></body></worldbody>\
+                 <actuator><motor joint='j' gear='2 3 4 5 6 7' ctrlrange='-3 3'/></actuator></mujoco>";
+    ablate("motor", &lines(motor), read_mjcf);
+    for kind in ["floating", "spherical", "ball", "fixed", "universal", "planar"] {
+        let urdf = format!(
+            "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='{kind}'>\
+             <parent link='a'/><child link='b'/><axis xyz='1 2 3'/><limit velocity='3'/></joint></robot>"
+        );
+        ablate(kind, &lines(&urdf), read_urdf);
+    }
+    for kind in ["ball", "fixed", "continuous", "universal"] {
+        let sdf = format!(
+            "<sdf version='1.9'><model name='m'><link name='a'/><link name='b'/>\
+             <joint name='j' type='{kind}'><parent>a</parent><child>b</child>\
+             <axis><xyz>1 2 3</xyz><limit><lower>-2</lower><upper>3</upper></limit></axis>\
+             </joint></model></sdf>"
+        );
+        ablate(kind, &lines(&sdf), read_sdf);
+    }
+}
+
+#[test]
+fn no_number_of_an_srdf_is_silent() {
+    let text = "<robot name='r' version='2'><group name='g' priority='2'><joint name='a' weight='2'/>
+<link name='l' order='3'/><chain base_link='b' tip_link='c' length='4'/><group name='h' rank='2'/><plugin rate='3'/></group>
+<group name='h'/><group_state name='s' group='g' time='3'><joint name='a' value='1 2' speed='3'/><gain>4</gain></group_state>
+<end_effector name='e' group='h' parent_link='c' mass='2'/><virtual_joint name='v' type='fixed' offset='2'/>
+<passive_joint name='p' damping='2'/><disable_collisions link1='a' link2='b' reason='Never' count='3'/>
+<enable_collisions link1='a' link2='b' count='3'/><disable_default_collisions link='c' count='3'/>
+<link_sphere_approximation link='a'><sphere center='1 2 3' radius='2'/></link_sphere_approximation></robot>";
+    ablate_content("srdf", &lines(text), |text| {
+        let srdf = srdf::parse(text, Path::new("r.srdf"))?;
+        let parts = (&srdf.groups, &srdf.states, &srdf.end_effectors, &srdf.passive_joints);
+        let pairs = (&srdf.disabled, &srdf.disabled_by_default, &srdf.enabled);
+        Ok((format!("{parts:?} {pairs:?}"), srdf.report.ignored.clone()))
+    });
 }
 
 #[test]

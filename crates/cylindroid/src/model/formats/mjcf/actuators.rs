@@ -88,7 +88,13 @@ impl<'d> Mjcf<'d> {
         self.reader.unread_attributes(node, &used(tag));
         let joint = self.joint_named(node, attribute)?;
         let element: Element<'d> = self.defaults.of(&self.reader, node, 0, &ACTUATORS)?;
-        let gear = element.list(&self.reader, "gear")?.and_then(|g| g.first().copied());
+        let gears = element.list(&self.reader, "gear")?.unwrap_or_default();
+        let gear = gears.first().copied();
+        if gears.iter().skip(1).any(|x| *x != 0.0) {
+            let why = "a joint of one coordinate has one gear; limits of others are not read";
+            let place = element.source_element("gear").unwrap_or(node);
+            self.reader.note(place, format!("attribute 'gear' of <{tag}>"), why, &name);
+        }
         // The control of a motor is its force; the force of other kinds is in forcerange.
         let range = match element.vector::<2>(&self.reader, "forcerange")? {
             None if tag == "motor" => element.vector::<2>(&self.reader, "ctrlrange")?,

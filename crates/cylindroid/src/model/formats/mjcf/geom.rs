@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::Mjcf;
 use super::assets::Mesh;
-use super::attributes::used;
+use super::attributes::{ORIENTATIONS, used};
 use super::copies::Placed;
 use super::defaults::Element;
 use super::mesh_inertia::MeshInertia;
@@ -68,6 +68,7 @@ impl<'d> Mjcf<'d> {
         let element = self.defaults.of(&self.reader, node, placed.class, &["geom"])?;
         self.reader.unread_attributes(node, &used("geom"));
         let (pose, size) = self.place_and_size(&element)?;
+        self.unread_places_and_sizes(&element);
         let name = placed.name().unwrap_or_default();
         let Some(geometry) = self.shape(&element, &size)? else { return Ok(()) };
         let own = element.vector::<4>(&self.reader, "rgba")?;
@@ -110,6 +111,36 @@ impl<'d> Mjcf<'d> {
         }
         size.push(half_length);
         Ok((between, size))
+    }
+
+    /// Logs the sizes that a shape does not have, and the pose of a geom between two points.
+    fn unread_places_and_sizes(&mut self, element: &Element<'d>) {
+        let between = element.source_element("fromto");
+        let used_sizes = match self.kind_of(element) {
+            "plane" | "mesh" | "hfield" | "sdf" => 0,
+            "sphere" => 1,
+            _ if between.is_some() => 1,
+            "capsule" | "cylinder" => 2,
+            _ => 3,
+        };
+        let body = self.reader.owner(element.node).to_owned();
+        let mut note = |node, attribute: &str, why| {
+            self.reader.note(node, format!("attribute '{attribute}' of <geom>"), why, &body);
+        };
+        if let Some(node) = element.source_element("size") {
+            let text = node.attribute("size").unwrap_or("");
+            let is_zero = |word: &str| word.parse() == Ok(0.0);
+            if text.split_whitespace().skip(used_sizes).any(|word| !is_zero(word)) {
+                note(node, "size", "a shape of this type has fewer sizes");
+            }
+        }
+        if between.is_some() {
+            for attribute in ["pos"].into_iter().chain(ORIENTATIONS) {
+                if let Some(node) = element.source_element(attribute) {
+                    note(node, attribute, "fromto gives the pose");
+                }
+            }
+        }
     }
 
     /// The type of a geom.

@@ -84,6 +84,16 @@ impl<'d> Sdf<'d> {
             let why = "only universal joints have a second axis";
             self.reader.note(node, "<axis2>", why, own);
         }
+        if let Some(axis) = self.reader.child(node, "axis") {
+            let why = match kind {
+                JointKind::Fixed => Some("a fixed joint does not move"),
+                JointKind::Spherical => Some("a ball joint turns about every axis"),
+                _ => None,
+            };
+            if let Some(why) = why {
+                self.reader.note(axis, "<axis>", why, own);
+            }
+        }
         let (limits, mimic) = self.axis_settings(node, kind, scope, own)?;
         let axis = first.unwrap_or(Vec3::Z);
         Ok(Some(JointEntry { node, name, kind, between, model_from_joint, axis, limits, mimic }))

@@ -4,8 +4,8 @@
 //! Valid    `<group>` of `<joint>`, `<link>`, `<chain>` and other groups, `<group_state>`,
 //!          `<end_effector>`, `<passive_joint>`, `<disable_collisions link1 link2>`,
 //!          `<disable_default_collisions link>` and `<enable_collisions link1 link2>`, in any order: a
-//!          pair that is enabled is not disabled by default. Virtual joints, collision spheres and
-//!          properties are not read; neither is what other programs add
+//!          pair that is enabled is not disabled by default. Virtual joints, collision spheres,
+//!          properties and what other programs add are in the report
 //! Source   MoveIt, srdfdom 2
 //! Checked  tests/collision/files.rs::srdf_*, tests/formats/srdf.rs
 
@@ -19,7 +19,7 @@ use super::span::Source;
 use super::text_file;
 use super::xml::{self, Reader};
 use crate::error::Result;
-use crate::model::Mechanism;
+use crate::model::{LoadReport, Mechanism};
 
 /// What an SRDF says about a robot, by the names of its links and joints.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,6 +38,8 @@ pub struct Srdf {
     pub disabled_by_default: Vec<String>,
     /// Pairs of `<enable_collisions>`, exceptions from the default.
     pub enabled: Vec<[String; 2]>,
+    /// What was not read.
+    pub report: LoadReport,
 }
 
 /// A group of joints: the union of its parts.
@@ -97,18 +99,34 @@ pub fn parse(text: &str, path: &Path) -> Result<Srdf> {
     let source = Source { format: "SRDF", path, text };
     let document = xml::document(&source)?;
     let root = document.root_element();
-    let reader = Reader::new(source, root.tag_name().namespace());
+    let mut reader = Reader::new(source, root.tag_name().namespace());
+    (reader.owners, reader.why) = (&["group", "group_state", "end_effector"], why_unused);
     if root.tag_name().name() != "robot" {
         let message = format!("<{}> is not the root of an SRDF", root.tag_name().name());
         return Err(reader.error(root, Reader::tag(root), message, "an SRDF begins with <robot>"));
     }
+    reader.unread_attributes(root, &["name", "version"]);
     let mut srdf = Srdf::default();
     for node in elements(root) {
+        let tag = node.tag_name().name();
+        let Some(known) = attributes(tag) else { continue };
+        reader.unread_attributes(node, known);
+        match tag {
+            "group" => {
+                let group = group(&mut reader, node)?;
+                srdf.groups.push(group);
+                continue;
+            }
+            "group_state" => {
+                let state = state(&mut reader, node)?;
+                srdf.states.push(state);
+                continue;
+            }
+            _ => {}
+        }
         let named = |attribute| word(&reader, node, attribute);
         let pair = || -> Result<[String; 2]> { Ok([named("link1")?, named("link2")?]) };
-        match node.tag_name().name() {
-            "group" => srdf.groups.push(group(&reader, node)?),
-            "group_state" => srdf.states.push(state(&reader, node)?),
+        match tag {
             "end_effector" => {
                 srdf.end_effectors.push(EndEffector {
                     name: named("name")?,
@@ -120,11 +138,32 @@ pub fn parse(text: &str, path: &Path) -> Result<Srdf> {
             "passive_joint" => srdf.passive_joints.push(named("name")?),
             "disable_collisions" => srdf.disabled.push(pair()?),
             "enable_collisions" => srdf.enabled.push(pair()?),
-            "disable_default_collisions" => srdf.disabled_by_default.push(named("link")?),
-            _ => {}
+            _ => srdf.disabled_by_default.push(named("link")?),
         }
     }
+    srdf.report.format = source.format;
+    reader.report(&[root], &mut srdf.report);
     Ok(srdf)
+}
+
+/// The attributes of the elements that are read.
+fn attributes(tag: &str) -> Option<&'static [&'static str]> {
+    Some(match tag {
+        "group" | "passive_joint" => &["name"],
+        "group_state" => &["name", "group"],
+        "end_effector" => &["name", "group", "parent_link", "parent_group"],
+        "disable_collisions" | "enable_collisions" => &["link1", "link2", "reason"],
+        "disable_default_collisions" => &["link"],
+        _ => return None,
+    })
+}
+
+fn why_unused(name: &str) -> &'static str {
+    match name {
+        "virtual_joint" => "the base is where the model has it",
+        "link_sphere_approximation" | "sphere" => "shapes for collisions are those of the model",
+        _ => "not known to this reader",
+    }
 }
 
 fn elements<'d, 'i>(node: Node<'d, 'i>) -> impl Iterator<Item = Node<'d, 'i>> {
@@ -140,28 +179,34 @@ fn optional(node: Node<'_, '_>, attribute: &str) -> Option<String> {
     name.map(str::to_owned)
 }
 
-fn group(reader: &Reader<'_>, node: Node<'_, '_>) -> Result<Group> {
+fn group(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Result<Group> {
     let mut group = Group { name: word(reader, node, "name")?, ..Group::default() };
     for part in elements(node) {
-        match part.tag_name().name() {
-            "joint" => group.joints.push(word(reader, part, "name")?),
-            "link" => group.links.push(word(reader, part, "name")?),
-            "group" => group.groups.push(word(reader, part, "name")?),
+        let tag = part.tag_name().name();
+        let list = match tag {
+            "joint" => &mut group.joints,
+            "link" => &mut group.links,
+            "group" => &mut group.groups,
             "chain" => {
+                reader.unread_attributes(part, &["base_link", "tip_link"]);
                 let ends = [word(reader, part, "base_link")?, word(reader, part, "tip_link")?];
                 group.chains.push(ends);
+                continue;
             }
-            _ => {}
-        }
+            _ => continue,
+        };
+        reader.unread_attributes(part, &["name"]);
+        list.push(word(reader, part, "name")?);
     }
     Ok(group)
 }
 
-fn state(reader: &Reader<'_>, node: Node<'_, '_>) -> Result<GroupState> {
+fn state(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Result<GroupState> {
     let name = word(reader, node, "name")?;
     let group = optional(node, "group");
     let mut joints = Vec::new();
     for part in elements(node).filter(|part| part.tag_name().name() == "joint") {
+        reader.unread_attributes(part, &["name", "value"]);
         reader.required(part, "value")?;
         let values = reader.list(part, "value")?.unwrap_or_default();
         if let Some(fault) = crate::model::magnitude::fault(&values) {

@@ -105,8 +105,12 @@ impl Reader<'_> {
             self.note(node, "<axis>", "the axes of a universal joint are x and y", name);
             return Ok(Vec3::X);
         }
-        let needed = !matches!(kind, JointKind::Free | JointKind::Spherical);
-        if needed && axis.unit(ZERO_AXIS).is_none() {
+        if matches!(kind, JointKind::Free | JointKind::Spherical) {
+            let name = joint.attribute("name").unwrap_or("");
+            self.note(node, "<axis>", "the joint turns about every axis", name);
+            return Ok(Vec3::X);
+        }
+        if axis.unit(ZERO_AXIS).is_none() {
             let name = joint.attribute("name").unwrap_or("");
             return Err(self.source.error(
                 Self::value(node, "xyz"),
