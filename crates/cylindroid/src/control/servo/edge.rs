@@ -34,27 +34,63 @@ pub(super) struct Edge<'a> {
     pub(super) way: Option<&'a [f64]>,
 }
 
+/// C at the configuration of the chain, for what is `left` of the scaled error; `hessian` is memory.
+pub(in crate::control) fn curvature_into(
+    (chain, space): (&Chain, &TaskSpace),
+    hessian: &mut [Matrix],
+    left: &[f64],
+    out: &mut Matrix,
+) {
+    chain.hessian_into(space.axes, hessian);
+    let columns = &space.columns;
+    for (i, h) in hessian.iter().enumerate() {
+        for (j, x) in out.column_mut(i).iter_mut().enumerate() {
+            let column = h.column(j);
+            let parts = left.iter().zip(&space.rows);
+            let sum: f64 = parts.map(|(e, &(row, scale))| e * scale * column[row]).sum();
+            *x = -sum * columns[i] * columns[j];
+        }
+    }
+    if let (ReferenceFrame::Local, Some(jacobian)) = (space.axes, hessian.first_mut()) {
+        chain.jacobian_into(space.axes, jacobian);
+        add_turn(space, jacobian, left, out);
+    }
+    for i in 0..out.rows() {
+        for j in 0..i {
+            let mean = 0.5 * (out[(i, j)] + out[(j, i)]);
+            (out[(i, j)], out[(j, i)]) = (mean, mean);
+        }
+    }
+}
+
+/// Adds the change of an error in axes that turn with the tool.
+fn add_turn(space: &TaskSpace, jacobian: &Matrix, left: &[f64], out: &mut Matrix) {
+    let mut error = [0.0; 6];
+    for (e, &(row, scale)) in left.iter().zip(&space.rows) {
+        error[row] = e / scale;
+    }
+    let [x, y, z, a, b, c] = error;
+    let (linear, angular) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
+    let columns = &space.columns;
+    for (j, scale) in columns.iter().enumerate() {
+        let column = jacobian.column(j);
+        let w = Vec3::new(column[3], column[4], column[5]);
+        let (v, r) = (w.cross(linear).to_array(), w.cross(angular).to_array());
+        for (i, own) in columns.iter().enumerate() {
+            let column = jacobian.column(i);
+            let along = |&(row, scale): &(usize, f64)| {
+                let turned = if row < 3 { v[row] } else { r[row - 3] };
+                scale * scale * column[row] * turned
+            };
+            let sum: f64 = space.rows.iter().map(along).sum();
+            out[(i, j)] += sum * own * scale;
+        }
+    }
+}
+
 impl Curvature for Edge<'_> {
     fn load(&mut self, left: &[f64], out: &mut Matrix) {
-        self.chain.hessian_into(self.space.axes, self.hessian);
-        let columns = &self.space.columns;
-        for (i, h) in self.hessian.iter().enumerate() {
-            for (j, x) in out.column_mut(i).iter_mut().enumerate() {
-                let column = h.column(j);
-                let parts = left.iter().zip(&self.space.rows);
-                let sum: f64 = parts.map(|(e, &(row, scale))| e * scale * column[row]).sum();
-                *x = -sum * columns[i] * columns[j];
-            }
-        }
-        if self.space.axes == ReferenceFrame::Local {
-            self.add_turn(left, out);
-        }
-        for i in 0..out.rows() {
-            for j in 0..i {
-                let mean = 0.5 * (out[(i, j)] + out[(j, i)]);
-                (out[(i, j)], out[(j, i)]) = (mean, mean);
-            }
-        }
+        curvature_into((self.chain, self.space), self.hessian, left, out);
     }
 
     fn share(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {
@@ -85,32 +121,5 @@ impl Edge<'_> {
         let of_task = if along > 0.0 && of_all > 0.0 { along / of_all } else { f64::INFINITY };
         let time = of_task.min((ahead / all).sqrt());
         (time > 0.0 && time < f64::INFINITY).then_some(time)
-    }
-
-    /// Adds the change of an error in axes that turn with the tool.
-    fn add_turn(&mut self, left: &[f64], out: &mut Matrix) {
-        let Some(jacobian) = self.hessian.first_mut() else { return };
-        self.chain.jacobian_into(self.space.axes, jacobian);
-        let mut error = [0.0; 6];
-        for (e, &(row, scale)) in left.iter().zip(&self.space.rows) {
-            error[row] = e / scale;
-        }
-        let [x, y, z, a, b, c] = error;
-        let (linear, angular) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
-        let columns = &self.space.columns;
-        for (j, scale) in columns.iter().enumerate() {
-            let column = jacobian.column(j);
-            let w = Vec3::new(column[3], column[4], column[5]);
-            let (v, r) = (w.cross(linear).to_array(), w.cross(angular).to_array());
-            for (i, own) in columns.iter().enumerate() {
-                let column = jacobian.column(i);
-                let along = |&(row, scale): &(usize, f64)| {
-                    let turned = if row < 3 { v[row] } else { r[row - 3] };
-                    scale * scale * column[row] * turned
-                };
-                let sum: f64 = self.space.rows.iter().map(along).sum();
-                out[(i, j)] += sum * own * scale;
-            }
-        }
     }
 }

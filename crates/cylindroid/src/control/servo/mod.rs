@@ -33,6 +33,7 @@ mod task_space;
 mod twist_step;
 
 pub(super) use coupled::least_acceleration;
+pub(super) use edge::curvature_into;
 pub(super) use jerk_limited_stop::JerkLimitedStop;
 pub(super) use limits::{acceleration_of, limits_of_servo};
 pub(super) use loop_motions::{LoopMotions, limits_of_loop_joints, nothing_actuated};
@@ -41,7 +42,7 @@ pub(super) use saddle::{Progress, Saddle, Surroundings};
 pub(super) use secondary::{SecondaryVelocities, add_posture};
 pub(super) use stall::{BrakingState, StallDetector};
 pub(super) use stopping::jerk_limited_stopping_velocity;
-pub(super) use task_space::is_locked;
+pub(super) use task_space::{TaskScaling, TaskSpace, is_locked};
 
 pub use controller::Servo;
 pub use controller::condition::ConditionReport;

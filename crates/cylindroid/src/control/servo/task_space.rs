@@ -14,17 +14,17 @@ use crate::task::Task;
 
 /// The task, and the scales of its rows and columns.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct TaskScaling<'a> {
-    pub(super) task: Task,
+pub(in crate::control) struct TaskScaling<'a> {
+    pub(in crate::control) task: Task,
     /// Characteristic length (m).
-    pub(super) length: f64,
+    pub(in crate::control) length: f64,
     /// A weight for each coordinate of the mechanism; empty for none.
-    pub(super) joint_weights: &'a [f64],
+    pub(in crate::control) joint_weights: &'a [f64],
 }
 
 /// The selected rows and columns, and their scales.
 #[derive(Debug, Clone)]
-pub(super) struct TaskSpace {
+pub(in crate::control) struct TaskSpace {
     pub(super) axes: ReferenceFrame,
     /// Row of the 6 x n Jacobian and its scale, for each of the m components.
     pub(super) rows: Vec<(usize, f64)>,
@@ -41,7 +41,11 @@ pub(super) struct TaskSpace {
 impl TaskSpace {
     /// For the joints of `chain` with these limits, and actuated loop-closure joints with the
     /// remaining ones.
-    pub(super) fn new(scaling: TaskScaling<'_>, chain: &Chain, limits: &[Limits]) -> Self {
+    pub(in crate::control) fn new(
+        scaling: TaskScaling<'_>,
+        chain: &Chain,
+        limits: &[Limits],
+    ) -> Self {
         let TaskScaling { task, length, joint_weights } = scaling;
         let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
         let component = |&i: &usize| task.components[i];

@@ -18,6 +18,7 @@
 //! Checked  src/control/solver/hierarchy/tests.rs (against Clarabel)
 
 mod clamping;
+mod damped_level;
 mod feasible;
 mod free;
 mod keep;
@@ -29,6 +30,7 @@ use std::ops::Range;
 use super::inequalities::Inequalities;
 use crate::linalg::{Basis, Matrix, dot, norm};
 
+pub(in crate::control) use damped_level::DampedLevel;
 pub(in crate::control) use free::Whole;
 pub(in crate::control) use level::Level;
 

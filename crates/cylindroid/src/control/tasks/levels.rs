@@ -5,8 +5,9 @@
 
 use std::ops::Range;
 
+use super::frame_curvature::FrameCurvature;
 use super::options::StoppedBy;
-use crate::control::solver::active_set::Level;
+use crate::control::solver::active_set::DampedLevel;
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::linalg::{Basis, Matrix};
 
@@ -19,7 +20,9 @@ pub(super) struct Stack {
     pub(super) members: Vec<Member>,
     pub(super) level: ScaledLevel,
     /// The rows of its tasks whose directions are changed; the others are zero.
-    pub(super) turned: Level,
+    pub(super) turned: DampedLevel,
+    /// The target before singular directions are left out of it.
+    pub(super) asked: Vec<f64>,
     /// Share of the level that higher levels or singular directions leave out.
     pub(super) left_out: f64,
 }
@@ -36,6 +39,10 @@ pub(super) struct Member {
     /// Norm of its scaled error, and of its velocity divided by its gain.
     pub(super) error: f64,
     pub(super) way: f64,
+    /// Of a frame on a tree.
+    pub(super) curvature: Option<Box<FrameCurvature>>,
+    /// Of its changed direction: the part of its scaled error that limits leave.
+    pub(super) left: Vec<f64>,
     pub(super) scale: f64,
     pub(super) stopped_by: Option<StoppedBy>,
     /// Workspace: of the space of its rows, and one of them.
@@ -45,14 +52,21 @@ pub(super) struct Member {
 
 impl Member {
     /// Of a task in n unknowns.
-    pub(super) fn new(task: usize, rows: Range<usize>, n: usize) -> Self {
+    pub(super) fn new(
+        task: usize,
+        rows: Range<usize>,
+        n: usize,
+        curvature: Option<Box<FrameCurvature>>,
+    ) -> Self {
         Self {
             task,
-            rows,
             direction_changed: false,
             is_curved: false,
             error: 0.0,
             way: 0.0,
+            curvature,
+            left: vec![0.0; rows.len()],
+            rows,
             scale: 1.0,
             stopped_by: None,
             basis: Basis::workspace(n),

@@ -10,6 +10,7 @@ mod braking;
 mod braking_path;
 mod escape;
 mod escaping;
+mod frame_curvature;
 mod goals;
 mod gradient;
 mod levels;

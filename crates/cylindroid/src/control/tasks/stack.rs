@@ -3,8 +3,9 @@
 //!
 //! Formula  `solver/hierarchy.rs`; directions changed, of all such tasks of a level at once:
 //!          min |A y - b|^2 + d |y|^2, d = k |error| of the task with the largest error, k from
-//!          `linear_range.rs` and the least d from `solver/saturation.rs`; for least squares |error| is the
-//!          part of it that limits leave, or all of it beyond the range of the linearised tasks
+//!          `linear_range.rs` and the least d from `solver/saturation.rs`; for least squares + y^T P(C) y, C
+//!          the curvature (`frame_curvature.rs`, k |error| |A_j| for other tasks) of the part of the
+//!          errors that limits leave, or of all of it beyond the range of the linearised tasks
 //! Valid    a level that higher levels fix in part cannot be scaled as a whole: its direction is
 //!          changed where a limit stops the rest
 //! Checked  tests/it/servo/tasks.rs, tests/it/servo/task_edges.rs
@@ -14,7 +15,7 @@ use super::linear_range::LinearRange;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::solver::active_set::{FEASIBLE, Level, Weak, Whole};
+use crate::control::solver::active_set::{DampedLevel, FEASIBLE, Level, Weak, Whole};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::saturation::{LEAST_DAMPING, MIN_SCALE, STRAIGHT};
@@ -111,7 +112,7 @@ impl TaskServo {
         for stack in &mut self.stacks {
             let gains = stack.members.iter().map(|m| self.tasks[m.task].gain);
             let mut linear = LinearRange::new(gains.fold(0.0, f64::max), dt);
-            let Stack { members, level, turned, left_out } = stack;
+            let Stack { members, level, turned, asked, left_out } = stack;
             let whole = &mut level.whole;
             for member in &mut *members {
                 let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
@@ -165,7 +166,12 @@ impl TaskServo {
                         let weight = (farthest / m.way).min(MOST_WEIGHT);
                         (m.rows.clone(), if weight.is_nan() { 1.0 } else { weight })
                     });
+                    asked.copy_from_slice(&whole.target);
                     let missing = self.set.reduce_target(whole, weak, error, weights);
+                    if !self.options.keep_directions {
+                        // Weak directions are damped by what bends them.
+                        whole.target.copy_from_slice(asked);
+                    }
                     *left_out = if size > 0.0 { missing / size } else { 0.0 };
                     linear.is_reduced = *left_out > 0.0;
                 }
@@ -185,22 +191,50 @@ impl TaskServo {
                     return false;
                 }
             }
-            let errors = members.iter().filter(|m| m.direction_changed).map(|m| m.error);
-            let Some(error) = errors.reduce(f64::max) else { continue };
+            if members.iter().all(|m| !m.direction_changed) {
+                continue;
+            }
             // The others share by their weights what is left: none of them comes first.
-            load_turned(turned, members, &level.whole);
-            let is_curved = members.iter().any(|m| m.is_curved);
-            let out_of_reach = if self.options.keep_directions || is_curved {
-                error
+            load_turned(&mut turned.level, members, &level.whole);
+            if self.options.keep_directions {
+                let errors = members.iter().filter(|m| m.direction_changed).map(|m| m.error);
+                let error = errors.fold(0.0, f64::max);
+                turned.damp_alike((linear.curvature * error).max(LEAST_DAMPING));
             } else {
-                // Only what limits leave of it.
-                let size = norm(&turned.target);
-                let left = self.set.least_residual(turned, STRAIGHT);
-                if size > 0.0 { error * (left / size) } else { 0.0 }
-            };
-            let damping = (linear.curvature * out_of_reach).max(LEAST_DAMPING);
+                self.set.least_residual(&mut turned.level, STRAIGHT);
+                let DampedLevel { level: own, curvature, .. } = &mut *turned;
+                let left = own.left(self.set.point());
+                curvature.as_mut_slice().fill(0.0);
+                for member in members.iter_mut().filter(|m| m.direction_changed) {
+                    let (task, rows) = (&self.rows[member.task], member.rows.clone());
+                    let root = self.tasks[member.task].weight.sqrt();
+                    // What limits leave of the error, or beyond the range of the tasks all of it.
+                    let (target, left) = (&level.whole.target[rows.clone()], &left[rows.clone()]);
+                    let size = norm(left).max(norm(target));
+                    let scale = if size > 0.0 { member.error / size } else { 0.0 };
+                    for (r, x) in member.left.iter_mut().enumerate() {
+                        *x = if member.is_curved {
+                            root * task.unit(r, length) * task.error[r]
+                        } else {
+                            scale * left[r]
+                        };
+                    }
+                    if let Some(of_frame) = &mut member.curvature {
+                        of_frame.add(self.state.q(), (&member.left, root), curvature);
+                        continue;
+                    }
+                    let damping = linear.curvature * norm(&member.left);
+                    for j in 0..curvature.cols() {
+                        let column = &level.whole.rows.column(j)[rows.clone()];
+                        curvature[(j, j)] += damping * norm(column);
+                    }
+                }
+                turned.damp(LEAST_DAMPING);
+            }
+            let is_curved = members.iter().any(|m| m.is_curved);
             self.stops.clear();
-            self.set.solve_damped(turned, damping, STRAIGHT, |row| self.stops.push(row));
+            self.set.solve_damped(turned, STRAIGHT, |row| self.stops.push(row));
+            let turned = &mut turned.level;
             turned.left(self.set.point());
             for member in members.iter_mut().filter(|m| m.direction_changed) {
                 let (mut stop, rows) = (None, member.rows.clone());

@@ -19,6 +19,7 @@
 
 use super::braking_path::BrakingPath;
 use super::escape::Escape;
+use super::frame_curvature::FrameCurvature;
 use super::gradient::Gradient;
 use super::levels::{Member, Stack, TaskRows};
 use super::motions::Motions;
@@ -29,7 +30,7 @@ use crate::control::servo::{
     BrakingState, Plant, Predictor, StallDetector, Status, acceleration_of, limits_of_loop_joints,
     limits_of_servo,
 };
-use crate::control::solver::active_set::{ActiveSet, Level};
+use crate::control::solver::active_set::{ActiveSet, DampedLevel};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::inequalities::Inequalities;
@@ -181,13 +182,26 @@ impl TaskServo {
                 for (i, task) in tasks.iter().enumerate() {
                     let m = task.objective.rows();
                     if task.level == level && m > 0 {
-                        members.push(Member::new(i, first..first + m, u));
+                        let joints = (&motions, &limits[..]);
+                        // Directions that are kept are damped alike.
+                        let is_bent = !options.keep_directions;
+                        let curvature = is_bent.then(|| {
+                            FrameCurvature::of(&task.objective, mechanism, joints, &options)
+                        });
+                        let rows = first..first + m;
+                        members.push(Member::new(i, rows, u, curvature.flatten()));
                         first += m;
                     }
                 }
                 let starts = members.iter().map(|m| m.rows.start).collect();
                 let level = ScaledLevel::new(starts, first, u);
-                Stack { members, level, turned: Level::new(first, u), left_out: 0.0 }
+                Stack {
+                    members,
+                    level,
+                    turned: DampedLevel::new(first, u),
+                    asked: vec![0.0; first],
+                    left_out: 0.0,
+                }
             })
             .collect();
         let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::{ActiveSet, DEPENDENT, Level, Objective, Precision, Use, Weak};
+use super::{ActiveSet, DEPENDENT, DampedLevel, Level, Objective, Precision, Use, Weak};
 use crate::linalg::{dot, norm};
 
 impl ActiveSet {
@@ -71,13 +71,19 @@ impl ActiveSet {
     /// damped motion, and the levels after it may leave them with its rows as they are.
     pub(in crate::control) fn solve_damped(
         &mut self,
-        level: &mut Level,
-        damping: f64,
+        damped: &mut DampedLevel,
         precision: Precision,
         stops: impl FnMut((usize, f64)),
     ) {
+        let DampedLevel { level, damping, is_curved, stacked, .. } = damped;
         level.scale = level.rows.frobenius_norm();
-        self.minimise(Objective::Damped(level, damping), precision);
+        let objective = if *is_curved {
+            stacked.scale = stacked.rows.frobenius_norm();
+            stacked
+        } else {
+            &mut *level
+        };
+        self.minimise(Objective::Damped(objective, *damping), precision);
         self.stopping().for_each(stops);
         self.keep_rows(level);
     }

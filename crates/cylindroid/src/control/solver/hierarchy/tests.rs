@@ -6,7 +6,7 @@ use clarabel::solver::{
     ZeroConeT,
 };
 
-use super::super::active_set::{FEASIBLE, Level, Precision, Whole};
+use super::super::active_set::{DampedLevel, FEASIBLE, Level, Precision, Whole};
 use super::problem::{Problem, Random};
 use super::{ScaledLevel, optimality};
 use crate::linalg::{Matrix, norm};
@@ -162,7 +162,6 @@ fn levels_are_the_optima_of_clarabel() {
     assert!(compared > 10_000, "{compared}");
 }
 
-/// The nearest point of the polyhedron is nearer than any other point found.
 /// A damped level keeps its rows and nothing else: what comes after it is the optimum of Clarabel with
 /// these rows alone, also where the damped motion stood at inequalities.
 #[test]
@@ -178,11 +177,12 @@ fn damped_levels_keep_their_rows_alone() {
         let mut set = problem.active_set();
         assert!(set.start(&vec![0.0; n]), "round {round}");
         let (a, b) = &problem.levels[0];
-        let mut level = Level::new(a.rows(), n);
-        level.rows = a.clone();
-        level.target.copy_from_slice(b);
+        let mut level = DampedLevel::new(a.rows(), n);
+        level.level.rows = a.clone();
+        level.level.target.copy_from_slice(b);
+        level.damp_alike(0.1);
         let mut stops = Vec::new();
-        set.solve_damped(&mut level, 0.1, Precision::EXACT, |(row, _)| stops.push(row));
+        set.solve_damped(&mut level, Precision::EXACT, |(row, _)| stops.push(row));
         let damped = set.point().to_vec();
         let values = a.mul_vec(&damped);
         let kept: Vec<(Vec<f64>, f64)> = a.to_rows().into_iter().zip(values).collect();
@@ -209,6 +209,55 @@ fn damped_levels_keep_their_rows_alone() {
     assert!(compared > 500 && left > 50, "{compared} compared, {left} left inequalities");
 }
 
+/// Directions are damped by the positive part of their curvature: the optimum of Clarabel for rows that
+/// say the same.
+#[test]
+fn curved_levels_are_the_optima_of_clarabel() {
+    let mut random = Random::seeded(17);
+    let (mut compared, damping) = (0, 1e-3_f64);
+    for round in 0..2000 {
+        let mut problem = Problem::random(&mut random);
+        let n = problem.n;
+        problem.levels.truncate(1);
+        // C = Q diag(c) Q, Q a reflection.
+        let v: Vec<f64> = (0..n).map(|_| random.signed()).collect();
+        let square: f64 = v.iter().map(|x| x * x).sum();
+        let q =
+            Matrix::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) - 2.0 * v[i] * v[j] / square);
+        let c: Vec<f64> = (0..n).map(|_| 3.0 * random.signed()).collect();
+        let mut set = problem.active_set();
+        assert!(set.start(&vec![0.0; n]), "round {round}");
+        let (a, b) = problem.levels[0].clone();
+        let m = a.rows();
+        let mut level = DampedLevel::new(m, n);
+        level.level.rows = a.clone();
+        level.level.target.copy_from_slice(&b);
+        level.curvature =
+            Matrix::from_fn(n, n, |i, j| (0..n).map(|k| q[(i, k)] * c[k] * q[(k, j)]).sum());
+        level.damp(damping);
+        set.solve_damped(&mut level, Precision::EXACT, |_| {});
+        problem.assert_feasible(set.point(), "curved level");
+        let rows =
+            Matrix::from_fn(m + 2 * n, n, |i, j| match (i.checked_sub(m), i.checked_sub(m + n)) {
+                (None, _) => a[(i, j)],
+                (Some(k), None) => c[k].max(0.0).sqrt() * q[(k, j)],
+                (_, Some(k)) => damping.sqrt() * f64::from(u8::from(k == j)),
+            });
+        let target = [&b[..], &vec![0.0; 2 * n]].concat();
+        problem.levels.push((rows.clone(), target.clone()));
+        let Some(other) = problem.referee(1, &[], None) else { continue };
+        if violation(&problem, &[], &other) > 1e-10 {
+            continue;
+        }
+        compared += 1;
+        let (own, theirs) =
+            (residual(&rows, &target, set.point()), residual(&rows, &target, &other));
+        assert!(own <= theirs + 1e-8 * (1.0 + theirs), "round {round}: {own} and {theirs}");
+    }
+    assert!(compared > 1000, "{compared}");
+}
+
+/// The nearest point of the polyhedron is nearer than any other point found.
 #[test]
 fn the_start_is_the_nearest_feasible_point() {
     let mut random = Random::seeded(5);
