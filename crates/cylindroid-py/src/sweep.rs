@@ -28,7 +28,7 @@ use crate::mechanism::PyMechanism;
 /// ----------
 /// folder : Path or str
 ///     `part-*.parquet` and `manifest.json`, with the recipe, the columns with their units and the
-///     SHA-256 of each part; a URI as it was given.
+///     XXH3 checksum (128 bits) of each part; a URI as it was given.
 /// rows : int
 ///     Rows of the sweep.
 /// computed : int
@@ -76,7 +76,7 @@ pub(crate) struct PySweepFolder {
 
 #[pymethods]
 impl PySweepFolder {
-    /// Size and SHA-256 of the parts that the manifest lists.
+    /// Size and XXH3 checksum of the parts that the manifest lists.
     fn listed(&self) -> Vec<Option<Listed>> {
         let listed = self.inner.iter().flat_map(|folder| folder.listed.iter());
         listed.map(|part| part.clone().map(of_part)).collect()

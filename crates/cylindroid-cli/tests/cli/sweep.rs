@@ -103,10 +103,13 @@ fn samples_of_closed_chains() {
     assert_eq!(column(&report, "dof")["largest"], 2.0);
 }
 
+/// Number of parts of [`start`].
+const PARTS: usize = 480;
+
 fn start(folder: &Path, resume: bool) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cylindroid"));
     command
-        .args(["sweep", "youbot", "--samples", "60000", "--part-rows", "500", "--threads", "2"])
+        .args(["sweep", "youbot", "--samples", "240000", "--part-rows", "500", "--threads", "2"])
         .args(["--quantities", "pose,yoshikawa,gibson_hunt", "--out"])
         .arg(folder)
         .stdout(Stdio::null())
@@ -122,30 +125,72 @@ fn manifest(folder: &Path) -> Value {
     serde_json::from_slice(&fs::read(folder.join("manifest.json")).unwrap()).unwrap()
 }
 
-/// Killed ten times, at moments that a generator chooses: the parts of an uninterrupted run.
+/// The number of parts that a manifest lists; zero where there is none.
+fn listed(folder: &Path) -> usize {
+    if folder.join("manifest.json").exists() {
+        manifest(folder)["parts"].as_array().unwrap().len()
+    } else {
+        0
+    }
+}
+
+/// Killed ten times while parts are being written, at moments that a generator chooses: each run
+/// goes on with the parts of those before, and at the end they are those of an uninterrupted run.
 #[test]
 fn killed_processes_are_resumed() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, own) = (folder.path().join("whole"), folder.path().join("own"));
     assert!(start(&whole, false).status().unwrap().success());
-    let mut random = 12_345_u64;
+    let (mut random, mut before) = (12_345_u64, 0);
     for run in 0..10 {
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let resume = own.join("manifest.json").exists();
-        assert!(resume || run == 0 || !own.join("part-000000.parquet").exists());
-        let mut child = start(&own, resume).spawn().unwrap();
-        sleep(Duration::from_millis(20 + (random >> 33) % 300));
+        let mut child = start(&own, own.join("manifest.json").exists()).spawn().unwrap();
+        while listed(&own) == before {
+            assert!(child.try_wait().unwrap().is_none(), "run {run} ended by itself");
+            sleep(Duration::from_millis(1));
+        }
+        sleep(Duration::from_millis((random >> 33) % 30));
         child.kill().unwrap();
         child.wait().unwrap();
+        let parts = listed(&own);
+        assert!(parts > before && parts < PARTS, "run {run}: {parts} parts after {before}");
+        before = parts;
     }
-    assert!(start(&own, own.join("manifest.json").exists()).status().unwrap().success());
+    assert!(start(&own, true).status().unwrap().success());
     let (a, b) = (manifest(&own), manifest(&whole));
     assert_eq!(a["complete"], true);
-    assert_eq!(a["parts"].as_array().unwrap().len(), 120);
+    assert_eq!(a["parts"].as_array().unwrap().len(), PARTS);
     assert_eq!(a, b);
     for part in a["parts"].as_array().unwrap() {
         let name = part["file"].as_str().unwrap();
         assert!(fs::read(own.join(name)).unwrap() == fs::read(whole.join(name)).unwrap());
+    }
+}
+
+/// Forms of the kernels that round otherwise are another recipe; four and eight lanes are the same.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn arithmetic_is_part_of_the_recipe() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |simd: &str, name: &str, more: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_cylindroid"))
+            .args(["sweep", "panda", "--samples", "100", "--quantities", "pose", "--out"])
+            .arg(folder.path().join(name))
+            .args(more)
+            .env("CYLINDROID_SIMD", simd)
+            .output()
+            .unwrap()
+    };
+    for simd in ["scalar", "avx2", "avx512"] {
+        assert!(run(simd, simd, &[]).status.success());
+    }
+    let [plain, four, eight] =
+        ["scalar", "avx2", "avx512"].map(|s| manifest(&folder.path().join(s)));
+    assert_eq!(four, eight);
+    assert!(run("avx2", "avx512", &["--resume"]).status.success());
+    if four != plain {
+        let message = String::from_utf8(run("avx2", "scalar", &["--resume"]).stderr).unwrap();
+        assert!(message.contains("arithmetic is \"x86_64\" there and"), "{message}");
     }
 }
 
@@ -162,7 +207,7 @@ fn interrupted_processes_are_resumed() {
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let code = child.wait().unwrap().code();
     let parts = manifest(&own)["parts"].as_array().unwrap().len();
-    assert!(code == Some(130) && (4..120).contains(&parts), "{code:?}, {parts} parts");
+    assert!(code == Some(130) && (4..PARTS).contains(&parts), "{code:?}, {parts} parts");
     assert!(start(&own, true).status().unwrap().success());
     assert_eq!(manifest(&own)["complete"], true);
 }

@@ -32,7 +32,7 @@ BETWEEN_MANIFESTS = 1.0
 #: How often Ray computes a part again whose worker died.
 RETRIES = 10
 MANIFEST = "manifest.json"
-#: Size and SHA-256 of a part.
+#: Size and XXH3 checksum (128 bits, hexadecimal) of a part.
 Listed = tuple[int, str]
 
 

@@ -29,6 +29,17 @@ pub(crate) use simd::{MAX_LANES, Simd, Simd4, SimdFloat};
 pub(crate) use splitmix64::uniform;
 pub(crate) use trig::sin_cos;
 
+/// How kernels round: of two processors with one name all results are the same to the bit.
+/// Registers of four and eight lanes agree, plain numbers round each product.
+#[must_use]
+pub(crate) fn arithmetic() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    if Avx2::detect().is_some() {
+        return "x86_64 with fused products";
+    }
+    std::env::consts::ARCH
+}
+
 /// The nearest number to `x` in [lower, upper]. NaN stays NaN; a NaN bound does not bound, where
 /// `f64::clamp` panics.
 #[inline]

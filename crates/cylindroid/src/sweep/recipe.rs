@@ -2,8 +2,9 @@
 //!
 //! Why so   a folder is resumed with the numbers that it already has, so every cause of another
 //!          number is in the recipe: the version, the mechanism (by a checksum of its parts), the
-//!          configurations, quantities and their options. Threads are no cause
-//! Checked  tests/sweep/folder.rs::another_recipe_is_refused
+//!          configurations, quantities and their options, and the processor's arithmetic. Threads are
+//!          no cause
+//! Checked  tests/sweep/folder.rs::another_recipe_is_refused, tests/it/simd.rs::forms_agree
 
 use std::fmt::{self, Display, Write as _};
 
@@ -18,6 +19,7 @@ use super::own_columns::OwnColumn;
 use super::quantity::Quantity;
 use super::source::Source;
 use crate::model::Mechanism;
+use crate::scalar::arithmetic;
 
 /// A JSON object.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +43,7 @@ impl Recipe {
         let quantities = options.quantities.iter().map(|q| q.name());
         let mut recipe = Self(json!({
             "version": env!("CARGO_PKG_VERSION"),
+            "arithmetic": arithmetic(),
             "model": mechanism.name(),
             "model_checksum": checksum_of(mechanism),
             "coordinates": names.collect::<Vec<_>>(),
