@@ -41,8 +41,9 @@ cargo xtask <task>
   python    builds the Python package, installs and tests it (needs Python 3 and PyPI)
   viewer    builds the viewer's page (needs Node.js with npm); --test drives it in Chromium against
             the server, --picture draws the picture of the README
-  c-install DIR
-            builds the C library and installs it with headers and files for CMake and pkg-config
+  c-install DIR [--use]
+            builds the C library and installs it with headers and files for CMake and pkg-config;
+            with --use builds and runs the examples with what is installed
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
             PyPI and the npm registry); --serve shows it while you write, --outputs writes what
             its commands and its Python print into the pages
@@ -104,7 +105,8 @@ cargo xtask <task>
   release [--build]
             packages the crates and the Python package's sources, with the page of the viewer, and
             prints what would be uploaded with sizes (needs Node.js, Python, crates.io and PyPI;
-            uploads nothing); with --build builds and uses each from its file alone
+            uploads nothing); with --build builds and uses each from its file alone, and
+            the C library from its folder
   figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {
@@ -126,7 +128,7 @@ fn run() -> Result<()> {
         Some("corpus") => corpus::task(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("python") => python::test(),
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
-        Some("c-install") => c_install::install(std::env::args().nth(2).as_deref()),
+        Some("c-install") => c_install::task(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("book") => book::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
         Some("python-names") => python_names::check(),

@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 use anyhow::{Context, Result, bail, ensure};
 
 use crate::shell::{captured, cargo, copy_folder, root, run};
-use crate::{python, viewer};
+use crate::{c_install, python, viewer};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The page inside the crate of the command line.
@@ -123,6 +123,11 @@ fn build(crates: &[PathBuf], distribution: &Path) -> Result<()> {
     run(Command::new(program("cylindroid")).args(["mobility", "stewart"]))?;
     serves_its_page(&program("cylindroid"))?;
     run(Command::new(program("cylindroid-ros2")).arg("--version"))?;
+
+    println!("\nthe library for C and C++");
+    let prefix = folder.0.join("c");
+    c_install::install(&prefix)?;
+    c_install::use_installed(&prefix, &folder.0)?;
 
     println!("\nthe Python package of {}", distribution.display());
     python::use_alone(distribution)

@@ -160,6 +160,8 @@ int main(void) {
     double far[16];
     memcpy(far, target, sizeof far);
     far[12] += 10.0;
+    CHECK(cyl_ik_solve(ik, target, solution, solution, &result)); /* in place */
+    EXPECT(cyl_ik_solve(ik, target, q, NULL, &result) == CYL_NULL_OR_TEXT);
     CHECK(cyl_ik_solve(ik, far, q, solution, &result));
     EXPECT(!result.success && *cyl_ik_reason(ik) != '\0');
     printf("far target: %s\n", cyl_ik_reason(ik));

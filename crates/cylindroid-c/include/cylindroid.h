@@ -3,7 +3,8 @@
  * Units: m, rad, s, N. Matrices are stored by columns (as Eigen and BLAS do): a pose is the 4 x 4
  * matrix world_from_tool, a Jacobian is 6 x n with the linear rows first, a twist is [v; w].
  * Errors: every function that can fail returns a cyl_status; cyl_last_error() says what happened in
- * words, on the same thread. Results are written only on success.
+ * words, on the same thread. Results are written only on success. Arrays that are written do not
+ * overlap those that are read, unless a function allows it.
  * Threads: a handle is used by one thread at a time; different handles are independent, and a
  * cyl_mechanism may be read by several threads at once.
  * Loop: functions marked "no allocation" neither allocate nor lock on success. */
@@ -277,7 +278,7 @@ void cyl_ik_free(struct cyl_ik *ik);
 
 // The configuration nearest to `guess` (n numbers, or null for the last guess, home at first) at which
 // the frame has this pose; without success the closest one found, which is CYL_OK as well:
-// `result->success` says it. `q` has n numbers, `result` may be null.
+// `result->success` says it. `q` has n numbers and may be `guess`, `result` may be null.
 enum cyl_status cyl_ik_solve(struct cyl_ik *ik,
                              const double *target,
                              const double *guess,
@@ -382,8 +383,8 @@ enum cyl_status cyl_mobility_at(const struct cyl_mechanism *mechanism,
                                 struct cyl_mobility *out);
 
 // An inverse of an m x n matrix by columns, by a method of the command line ("truncated", "damped",
-// ...) with its default parameters: n x m numbers by columns in `out`; the rank in `rank`, which may be
-// null.
+// ...) with its default parameters: n x m numbers by columns in `out`, which may be `matrix`; the rank
+// in `rank`, which may be null.
 enum cyl_status cyl_inverse(const double *matrix,
                             size_t rows,
                             size_t cols,
@@ -392,7 +393,7 @@ enum cyl_status cyl_inverse(const double *matrix,
                             size_t *rank);
 
 // The hyperbolic pseudoinverse of a 6 x n matrix of twists (linear rows first) for the pitch h
-// [m/rad]: n x 6 numbers by columns in `out`, if it exists.
+// [m/rad]: n x 6 numbers by columns in `out`, which may be `jacobian`, if it exists.
 enum cyl_status cyl_hyperbolic(const double *jacobian,
                                size_t cols,
                                double h,

@@ -8,7 +8,7 @@ use cylindroid::{Matrix, Method};
 
 use crate::arguments::{handle, handle_mut, sized, slice, slice_mut, text};
 use crate::mechanism::cyl_mechanism;
-use crate::status::{cyl_status, guard};
+use crate::status::{cyl_status, guard, null};
 
 /// The counts of a configuration.
 #[repr(C)]
@@ -60,8 +60,8 @@ pub unsafe extern "C" fn cyl_mobility_at(
 }
 
 /// An inverse of an m x n matrix by columns, by a method of the command line ("truncated", "damped",
-/// ...) with its default parameters: n x m numbers by columns in `out`; the rank in `rank`, which may be
-/// null.
+/// ...) with its default parameters: n x m numbers by columns in `out`, which may be `matrix`; the rank
+/// in `rank`, which may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyl_inverse(
     matrix: *const f64,
@@ -74,12 +74,14 @@ pub unsafe extern "C" fn cyl_inverse(
     guard(|| {
         let size = sized("matrix", rows, cols)?;
         // SAFETY: as the header requires.
-        let (matrix, method, out) = unsafe {
-            (slice("matrix", matrix, size)?, text("method", method)?, slice_mut("out", out, size)?)
-        };
+        let (matrix, method) = unsafe { (slice("matrix", matrix, size)?, text("method", method)?) };
+        if out.is_null() && size > 0 {
+            return Err(null("out"));
+        }
         let j = Matrix::from_fn(rows, cols, |r, c| matrix[rows * c + r]);
         let found = weighted(&j, Method::named(method)?, &Weights::default())?;
-        out.copy_from_slice(found.matrix.as_slice());
+        // SAFETY: as the header requires; it may be `matrix`, which is no longer used.
+        unsafe { slice_mut("out", out, size) }?.copy_from_slice(found.matrix.as_slice());
         // SAFETY: as the header requires.
         if let Some(rank) = unsafe { rank.as_mut() } {
             *rank = found.rank;
@@ -89,7 +91,7 @@ pub unsafe extern "C" fn cyl_inverse(
 }
 
 /// The hyperbolic pseudoinverse of a 6 x n matrix of twists (linear rows first) for the pitch h
-/// [m/rad]: n x 6 numbers by columns in `out`, if it exists.
+/// [m/rad]: n x 6 numbers by columns in `out`, which may be `jacobian`, if it exists.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyl_hyperbolic(
     jacobian: *const f64,
@@ -101,17 +103,16 @@ pub unsafe extern "C" fn cyl_hyperbolic(
     guard(|| {
         let size = sized("jacobian", cols, 6)?;
         // SAFETY: as the header requires.
-        let (jacobian, exists, out) = unsafe {
-            (
-                slice("jacobian", jacobian, size)?,
-                handle_mut("exists", exists)?,
-                slice_mut("out", out, size)?,
-            )
-        };
+        let (jacobian, exists) =
+            unsafe { (slice("jacobian", jacobian, size)?, handle_mut("exists", exists)?) };
+        if out.is_null() && size > 0 {
+            return Err(null("out"));
+        }
         let found = hyperbolic(&Matrix::from_fn(6, cols, |r, c| jacobian[6 * c + r]), h)?;
         *exists = found.exists;
         if found.exists {
-            out.copy_from_slice(found.matrix.as_slice());
+            // SAFETY: as the header requires; it may be `jacobian`, which is no longer used.
+            unsafe { slice_mut("out", out, size) }?.copy_from_slice(found.matrix.as_slice());
         }
         Ok(())
     })

@@ -7,7 +7,7 @@ use cylindroid::ik::{Goal, IkOptions, Solver, Task};
 
 use crate::arguments::{end_effector, free, give, handle, handle_mut, pose, slice, slice_mut};
 use crate::mechanism::cyl_mechanism;
-use crate::status::{cyl_status, guard};
+use crate::status::{cyl_status, guard, null};
 
 /// A solver of inverse kinematics for one frame of a tree.
 #[derive(Debug)]
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn cyl_ik_free(ik: *mut cyl_ik) {
 
 /// The configuration nearest to `guess` (n numbers, or null for the last guess, home at first) at which
 /// the frame has this pose; without success the closest one found, which is CYL_OK as well:
-/// `result->success` says it. `q` has n numbers, `result` may be null.
+/// `result->success` says it. `q` has n numbers and may be `guess`, `result` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyl_ik_solve(
     ik: *mut cyl_ik,
@@ -77,14 +77,17 @@ pub unsafe extern "C" fn cyl_ik_solve(
     guard(|| {
         // SAFETY: as the header requires.
         let (ik, target) = unsafe { (handle_mut("ik", ik)?, pose("target", target)?) };
-        // SAFETY: n numbers, as the header says.
-        let q = unsafe { slice_mut("q", q, ik.n) }?;
+        if q.is_null() && ik.n > 0 {
+            return Err(null("q"));
+        }
         if !guess.is_null() {
-            // SAFETY: as `q`.
+            // SAFETY: n numbers, as the header says; `q` may be the same ones, so that it becomes
+            // a slice after the last use of these.
             ik.solver.set_initial_guess(unsafe { slice("guess", guess, ik.n) }?)?;
         }
         let found = ik.solver.solve(&[Goal::frame(ik.of, Task::POSE, target)])?;
-        q.copy_from_slice(&found.q);
+        // SAFETY: as `guess`.
+        unsafe { slice_mut("q", q, ik.n) }?.copy_from_slice(&found.q);
         let reason = found.reason.map(|reason| reason.to_string()).unwrap_or_default();
         ik.reason = CString::new(reason).unwrap_or_default();
         // SAFETY: as the header requires.
