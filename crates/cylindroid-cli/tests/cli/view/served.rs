@@ -26,10 +26,13 @@ fn it_prints_one_line_and_can_stop_there() {
     assert_eq!(cylindroid(&["view", "panda", "--port", "70000"]).status.code(), Some(2));
 }
 
-/// The port is the usual one for the first, and a free one for the next.
+/// The port is the usual one for the first, unless another program has it, and a free one for the
+/// next.
 #[test]
 fn the_usual_port_or_a_free_one() {
+    let is_free = std::net::TcpListener::bind("127.0.0.1:7411").is_ok();
     let servers = [(); 2].map(|()| Server::new_at_usual_port(&["five-bar"]));
+    assert!(servers[0].port == 7411 || !is_free, "{}", servers[0].port);
     assert_ne!(servers[0].port, servers[1].port);
     for server in &servers {
         assert_eq!(server.get("/").0, 200);
@@ -46,6 +49,19 @@ fn a_token_hides_the_server() {
     assert_eq!(server.get("/").0, 404);
     let path = format!("/{}/", server.token);
     assert_eq!(server.get(&path).0, 200);
+}
+
+/// A server that others reach says so, with the address that they open; one that they do not is silent.
+#[test]
+fn a_server_for_others_warns() {
+    let warning = |host: &str| {
+        let output = cylindroid(&["view", "five-bar", "--check", "--port", "0", "--host", host]);
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let text = warning("0.0.0.0");
+    assert!(text.contains("note: everyone who reaches this machine can open http://"), "{text}");
+    assert!(!warning("127.0.0.1").contains("everyone"));
 }
 
 /// `--open` runs the browser of the environment on the URL.
@@ -83,6 +99,7 @@ fn answers_carry_the_security_headers() {
             assert!(head.contains(header), "{path}: {answer}");
         }
         assert!(!head.contains("access-control-allow-origin"));
+        assert!(!head.contains("unsafe-"), "{path}: {answer}");
     }
     assert_eq!(server.ask(&format!("POST / HTTP/1.1\r\nHost: {}", server.address())).0, 405);
     assert_eq!(server.get("/no/such/page").0, 404);
