@@ -214,6 +214,8 @@ pub(crate) enum Angles {
     Rpy,
     /// Euler angles about z, the rotated y, the rotated z
     Zyz,
+    /// Euler angles about x, the rotated y, the rotated z
+    Xyz,
     /// The rotation vector, axis times angle
     RotationVector,
 }

@@ -184,14 +184,65 @@ def test_names_and_results():
     assert robot.islimit(robot.qlim[0]) == [True] * 7 and not any(robot.islimit(q))
 
 
+def angles_of(T, representation):
+    """Roll, pitch and yaw by the Toolbox's definitions."""
+    R = T[:3, :3]
+    if representation == "rpy/xyz":  # Rx(yaw) Ry(pitch) Rz(roll)
+        return np.array([np.arctan2(-R[0, 1], R[0, 0]), np.arcsin(R[0, 2]),
+                         np.arctan2(-R[1, 2], R[2, 2])])
+    return np.array([np.arctan2(R[2, 1], R[2, 2]), -np.arcsin(R[2, 0]), np.arctan2(R[1, 0], R[0, 0])])
+
+
+@pytest.mark.parametrize("representation", ["rpy/xyz", "rpy/zyx"])
+def test_rates_of_roll_pitch_yaw(representation):
+    robot = Robot("panda")
+    q = np.array([0.1, -0.3, 0.2, -1.8, 0.3, 1.6, 0.5])
+    found = robot.jacob0_analytical(q, representation)
+    for i, step in enumerate(1e-6 * np.eye(7)):
+        ends = [angles_of(robot.fkine(q + s * step), representation) for s in (1, -1)]
+        np.testing.assert_allclose(found[3:, i], (ends[0] - ends[1]) / 2e-6, atol=1e-8)
+    np.testing.assert_array_equal(robot.jacob0_analytical(q)[:3], robot.jacob0(q)[:3])
+
+
+def test_frames_at_rest_and_options_of_searches():
+    robot = Robot("panda")
+    q, base = robot.qr, robot.mechanism.frames[0]
+    T = robot.fkine(q, None, "link4")
+    np.testing.assert_allclose(robot.fkine(q, "link4") @ T, robot.fkine(q), atol=1e-15)
+    np.testing.assert_array_equal(robot.jacob0(q, None, base), robot.jacob0(q))
+    found = robot.ikine_LM(T := robot.fkine(q), None, base, q, 30, 100, 1e-6, None, True, 0, k=0.1,
+                           method="sugihara")
+    assert found.success
+    np.testing.assert_allclose(robot.fkine(found.q), T, atol=1e-5)
+    assert robot.ik_NR(T, None, base, q, 30, 100, 1e-6, None, True, pinv=True)[1] == 1
+
+
+def test_pictures():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    robot = Robot("panda")
+    robot.q = robot.qr
+    for draw in (robot.plot, robot.vellipse, robot.plot_vellipse, robot.fellipse):
+        assert draw().has_data() and draw(robot.qr).has_data()
+        plt.close("all")
+    assert robot.vellipse(opt="rot").has_data()
+    with pytest.raises(ValueError, match="opt = 'all'"):
+        robot.vellipse(opt="all")
+
+
 def test_what_is_missing_says_what_to_use():
     robot = Robot("panda")
     with pytest.raises(NotImplementedError, match="use cylindroid.JointMove"):
         robot.jtraj
     with pytest.raises(NotImplementedError, match="'rne' of the Robotics Toolbox is not in"):
         robot.rne
-    with pytest.raises(NotImplementedError, match="'eul' or 'exp'"):
-        robot.jacob0_analytical(robot.qr)
+    with pytest.raises(NotImplementedError, match="limits are always kept"):
+        robot.ikine_LM(robot.fkine(robot.qr), joint_limits=False)
+    with pytest.raises(TypeError, match="no argument 'speed'"):
+        robot.ik_LM(robot.fkine(robot.qr), speed=2)
+    with pytest.raises(NotImplementedError, match="link4' moves"):
+        robot.jacob0(robot.qr, start="link4")
+    with pytest.raises(ValueError, match="'xyz': one of rpy/xyz, rpy/zyx, eul, exp"):
+        robot.jacob0_analytical(robot.qr, "xyz")
     assert not hasattr(robot, "rne") and not hasattr(robot, "other")
     with pytest.raises(AttributeError, match="no attribute 'other'"):
         robot.other
@@ -228,7 +279,7 @@ def test_every_member_is_there_or_says_what_to_use():
         except NotImplementedError as error:
             message = str(error)
             assert message.startswith(f"'{name}' of the Robotics Toolbox is not in"), message
-    assert here >= 32
+    assert here >= 37
 
 
 def test_a_robot_keeps_a_state():

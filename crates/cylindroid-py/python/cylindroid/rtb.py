@@ -11,7 +11,9 @@ What is as there: ``jacob0`` has world axes and its linear part at the end effec
 ``jacobe`` the axes of the end effector; ``ikine_LM`` returns ``.q``, ``.success``, ``.iterations``,
 ``.searches``, ``.residual``, and ``ik_LM`` the same as a tuple. What is not: poses are arrays of
 4 x 4, not ``SE3``; all methods of inverse kinematics are the one of `Mechanism.ik`, which keeps joint
-limits; frames are named, not numbered; ``manipulability`` of an arm with fewer joints than axes is
+limits, so that options of their searches (``method``, ``k``, ``pinv``, ...) are accepted and change
+nothing; ``plot``, ``vellipse`` and ``fellipse`` draw with matplotlib and return its axes; frames are
+named, not numbered; ``manipulability`` of an arm with fewer joints than axes is
 the volume that its joints do span, where there it is zero. Members of the Toolbox that are not here
 raise `NotImplementedError` with the function that does the same.
 """
@@ -43,11 +45,8 @@ _INSTEAD = {
     "ikine_a ikine_analytic ikine_6s analytic_ik isspherical": "Mechanism.ik, which uses closed "
     "forms",
     "jtraj": "cylindroid.JointMove",
-    "vellipse plot_vellipse plot_ellipse": "cylindroid.plot.ellipsoid of "
-    "Mechanism.manipulability(q).kinematic",
-    "fellipse plot_fellipse": "cylindroid.plot.ellipsoid of "
-    "Mechanism.manipulability(q).active_force",
-    "plot teach": "cylindroid.show or cylindroid.plot.mechanism",
+    "plot_ellipse": "cylindroid.plot.ellipsoid",
+    "teach": "cylindroid.show",
     "inertia r": "Mechanism.mass_matrix",
     "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
     "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
@@ -64,6 +63,9 @@ _INSTEAD = {
     "manufacturer keywords payload_capacity configurations_str config_validate jointdynamics "
     "control_mode default_backend set_default_backend": "",
 }
+
+#: Options of the Toolbox's searches for inverse kinematics.
+_SEARCH = {"k", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
 
 
 class _NotHere(NotImplementedError, AttributeError):
@@ -237,25 +239,51 @@ class Robot:
         return np.random.default_rng(seed).uniform(np.minimum(lower, upper), upper)
 
     def fkine(
-        self, q: ArrayLike, end: str | None = None, tool: ArrayLike | None = None
+        self,
+        q: ArrayLike,
+        end: str | None = None,
+        start: str | None = None,
+        tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The pose of the end effector, (4, 4) or (N, 4, 4): `Mechanism.fk`."""
-        return self.mechanism.fk(q, end or self._end, tool)
+        """The pose of the end effector, (4, 4) or (N, 4, 4): `Mechanism.fk`.
+
+        With `start` that in this frame.
+        """
+        pose = self.mechanism.fk(q, end or self._end, tool)
+        return pose if start is None else np.linalg.solve(self.mechanism.fk(q, start), pose)
 
     def fkine_all(self, q: ArrayLike) -> NDArray[np.float64]:
         """The poses of all frames, in the order of `Mechanism.frames`: `Mechanism.fk_all`."""
         return self.mechanism.fk_all(q)
 
+    def _from_base(self, start: str | None) -> None:
+        """Raises if `start` is not the base: velocities are relative to the world."""
+        moves = start is not None and np.any(self.mechanism.jacobian(self.qr, start))
+        if moves:
+            raise _NotHere(
+                f"start = {start!r} moves: Jacobians and targets are relative to the world here"
+            )
+
     def jacob0(
-        self, q: ArrayLike, end: str | None = None, tool: ArrayLike | None = None
+        self,
+        q: ArrayLike,
+        end: str | None = None,
+        start: str | None = None,
+        tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """The Jacobian in world axes, (6, n) or (N, 6, n), linear rows first."""
+        self._from_base(start)
         return self.mechanism.jacobian(q, end or self._end, "local_world_aligned", tool)
 
     def jacobe(
-        self, q: ArrayLike, end: str | None = None, tool: ArrayLike | None = None
+        self,
+        q: ArrayLike,
+        end: str | None = None,
+        start: str | None = None,
+        tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n)."""
+        self._from_base(start)
         return self.mechanism.jacobian(q, end or self._end, "local", tool)
 
     def hessian0(self, q: ArrayLike, end: str | None = None) -> NDArray[np.float64]:
@@ -276,26 +304,37 @@ class Robot:
         return self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
 
     def jacob0_analytical(
-        self, q: ArrayLike, representation: str = "rpy/xyz", end: str | None = None
+        self,
+        q: ArrayLike,
+        representation: str = "rpy/xyz",
+        end: str | None = None,
+        start: str | None = None,
+        tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Jacobian of position and angles, (6, n).
+        """The Jacobian of position and angles, (6, n) or (N, 6, n).
 
         Parameters
         ----------
-        q : array_like, (n,)
+        q : array_like, (n,) or (N, n)
         representation : str
-            'eul' (angles about z, y, z) or 'exp' (rotation vector); the Toolbox's 'rpy/xyz' and
-            'rpy/zyx' are other angles than those of `Mechanism.analytical_jacobian`.
+            'rpy/xyz', 'rpy/zyx' (roll, pitch and yaw), 'eul' (angles about z, y, z) or 'exp' (rotation
+            vector).
         end : str, optional
             A frame by name.
+        start : str, optional
+            A frame at rest.
+        tool : array_like, (4, 4), optional
+            A point on it.
         """
-        angles = {"eul": "zyz", "exp": "rotation_vector"}.get(representation)
-        if angles is None:
-            raise _NotHere(
-                f"representation = {representation!r} is not in cylindroid.rtb: 'eul' or 'exp'; "
-                "or Mechanism.analytical_jacobian with angles about fixed axes"
-            )
-        return self.mechanism.analytical_jacobian(q, angles, end or self._end)
+        self._from_base(start)
+        angles = {"rpy/xyz": "xyz", "rpy/zyx": "rpy", "eul": "zyz", "exp": "rotation_vector"}
+        if representation not in angles:
+            raise ValueError(f"representation = {representation!r}: one of {', '.join(angles)}")
+        found = self.mechanism.analytical_jacobian(
+            q, angles[representation], end or self._end, tool
+        )
+        # Roll first, which is the last angle there.
+        return found[..., [0, 1, 2, 5, 4, 3], :] if representation == "rpy/xyz" else found
 
     def jacobm(
         self, q: ArrayLike | None = None, axes: str = "all", end: str | None = None
@@ -365,12 +404,15 @@ class Robot:
         self,
         Tep: ArrayLike,
         end: str | None = None,
+        start: str | None = None,
         q0: ArrayLike | None = None,
         ilimit: int = 30,
         slimit: int = 100,
         tol: float = 1e-6,
         mask: ArrayLike | None = None,
+        joint_limits: bool = True,
         seed: int | None = None,
+        **search: Any,
     ) -> IKSolution:
         """A configuration that puts the end effector at a pose: `Mechanism.ik`.
 
@@ -380,6 +422,8 @@ class Robot:
             The pose (m).
         end : str, optional
             A frame by name.
+        start : str, optional
+            A frame at rest, in which the pose is.
         q0 : array_like, (n,), optional
             Where to start.
         ilimit, slimit : int
@@ -388,13 +432,26 @@ class Robot:
             Tolerance of the residual, half the squared error.
         mask : six numbers, optional
             Which components matter; those that are not zero.
+        joint_limits : bool
+            True; limits are always kept.
         seed : int, optional
+        **search
+            `method`, `k`, `kq`, `km`, `ps`, `pi`, `pinv`, `pinv_damping` of the Toolbox's searches, which
+            this one does not have: they change nothing.
 
         Returns
         -------
         IKSolution
             Within joint limits, always.
         """
+        for name in search:
+            if name not in _SEARCH:
+                raise TypeError(f"ikine_LM() has no argument {name!r}")
+        if not joint_limits:
+            raise _NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
+        if start is not None:
+            self._from_base(start)
+            Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
         task = None
         if mask is not None:
             chosen = np.asarray(mask, dtype=float) != 0
@@ -425,10 +482,64 @@ class Robot:
     ikine_NR = ikine_GN = ikine_QP = ikine_LM
 
     def ik_LM(
-        self, Tep: ArrayLike, end: str | None = None, q0: ArrayLike | None = None, **options: Any
+        self,
+        Tep: ArrayLike,
+        end: str | None = None,
+        start: str | None = None,
+        q0: ArrayLike | None = None,
+        ilimit: int = 30,
+        slimit: int = 100,
+        tol: float = 1e-6,
+        mask: ArrayLike | None = None,
+        joint_limits: bool = True,
+        **search: Any,
     ) -> tuple[NDArray[np.float64], int, int, int, float]:
         """`ikine_LM` as a tuple: q, success (0 or 1), iterations, searches, residual."""
-        found = self.ikine_LM(Tep, end, q0, **options)
+        found = self.ikine_LM(
+            Tep, end, start, q0, ilimit, slimit, tol, mask, joint_limits, **search
+        )
         return found.q, int(found.success), found.iterations, found.searches, found.residual
 
     ik_NR = ik_GN = ik_LM
+
+    def _components(self, opt: str) -> str:
+        if opt not in ("trans", "rot"):
+            raise ValueError(f"opt = {opt!r}: 'trans' or 'rot'")
+        return _AXES[opt]
+
+    def _ellipse(self, q: ArrayLike | None, opt: str, kind: str, options: dict[str, Any]) -> Any:
+        from . import plot
+
+        q = self.mechanism.ordered(self.q if q is None else q)
+        report = self.mechanism.manipulability(
+            q, reference=self._end, task=self._components(opt)
+        )
+        return plot.ellipsoid(getattr(report, kind), self.fkine(q)[:3, 3], **options)
+
+    def vellipse(self, q: ArrayLike | None = None, opt: str = "trans", **options: Any) -> Any:
+        """Draws the ellipsoid of velocities: `cylindroid.plot.ellipsoid`, whose options it takes.
+
+        Parameters
+        ----------
+        q : array_like, (n,), optional
+            Default: `q`.
+        opt : str
+            'trans' or 'rot'.
+
+        Returns
+        -------
+        The axes of matplotlib.
+        """
+        return self._ellipse(q, opt, "kinematic", options)
+
+    def fellipse(self, q: ArrayLike | None = None, opt: str = "trans", **options: Any) -> Any:
+        """Draws the ellipsoid of forces; as `vellipse`."""
+        return self._ellipse(q, opt, "active_force", options)
+
+    plot_vellipse, plot_fellipse = vellipse, fellipse
+
+    def plot(self, q: ArrayLike | None = None, ax: Any = None) -> Any:
+        """Draws the robot: `cylindroid.plot.mechanism`; returns the axes of matplotlib."""
+        from . import plot
+
+        return plot.mechanism(self.mechanism, self.q if q is None else q, ax)

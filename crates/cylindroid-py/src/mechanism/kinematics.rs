@@ -408,7 +408,7 @@ impl PyMechanism {
     /// q : array_like, (n,) or (N, n)
     ///     Coordinates in the order of `joint_names` [rad or m].
     /// angles : str
-    ///     'rpy' (about fixed x, y, z), 'zyz' (Euler angles) or 'rotation_vector'.
+    ///     'rpy' (about fixed x, y, z), 'zyz' or 'xyz' (Euler angles) or 'rotation_vector'.
     /// frame : str, optional
     ///     One of `frames`. Default: `tool`.
     /// tool : array_like, (4, 4), optional
@@ -434,9 +434,10 @@ impl PyMechanism {
         #[pyo3(from_py_with = argument)] frame: Option<&str>,
         tool: Option<Numbers<'py>>,
     ) -> Result<Array<'py>> {
-        const ANGLES: [(&str, OrientationRates); 3] = [
+        const ANGLES: [(&str, OrientationRates); 4] = [
             ("rpy", OrientationRates::Rpy),
             ("zyz", OrientationRates::Zyz),
+            ("xyz", OrientationRates::Xyz),
             ("rotation_vector", OrientationRates::RotationVector),
         ];
         let n = self.inner.n();

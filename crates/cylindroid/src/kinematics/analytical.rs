@@ -3,7 +3,8 @@
 //! Formula  [dp/dt; dphi/dt] = [J_v; E(phi)^-1 J_w] qd, omega = E(phi) dphi/dt
 //! Shapes   6 x n, world axes
 //! Units    m/s and rad/s
-//! Valid    det E: cos(pitch) for rpy, -sin(beta) for zyz, never zero for the rotation vector.
+//! Valid    det E: cos(pitch) for rpy, -sin(beta) for zyz, cos(beta) for xyz, never zero for the rotation
+//!          vector.
 //!          Where |det E| <= `tolerance::ANGLE_SINGULAR` no angle rates produce some angular
 //!          velocities: `exists` is false and the angle rows hold the least-squares rates.
 //! Source   Siciliano et al. 2009, section 3.6
@@ -11,7 +12,7 @@
 
 use crate::inverse::truncated;
 use crate::linalg::Matrix;
-use crate::spatial::{Mat3, Pose, Rpy, Vec3, Zyz, rotation_log_derivative};
+use crate::spatial::{Mat3, Pose, Rpy, Vec3, Xyz, Zyz, rotation_log_derivative};
 use crate::tolerance::ANGLE_SINGULAR;
 
 /// The orientation coordinates whose rates replace the angular velocity.
@@ -22,6 +23,8 @@ pub enum OrientationRates {
     Rpy,
     /// Euler angles about z, y, z.
     Zyz,
+    /// Euler angles about x, y, z.
+    Xyz,
     /// The rotation vector (axis times angle in [0, pi]).
     RotationVector,
 }
@@ -34,7 +37,7 @@ pub enum OrientationRates {
 /// ```
 ///
 /// 6 x n, world axes, m/s and rad/s. det E is cos(pitch) for roll, pitch, yaw, -sin(beta) for z, y,
-/// z angles, and never zero for the rotation vector. Where E is singular, the rows of the angles
+/// z angles, cos(beta) for x, y, z angles, and never zero for the rotation vector. Where E is singular, the rows of the angles
 /// are least-squares rates.
 ///
 /// Source: Siciliano et al. 2009, section 3.6.
@@ -59,6 +62,7 @@ pub(super) fn analytical(
     let (rates_from_omega, determinant) = match rates {
         OrientationRates::Rpy => inverse3(Rpy::of(rotation).omega_from_rates()),
         OrientationRates::Zyz => inverse3(Zyz::of(rotation).omega_from_rates()),
+        OrientationRates::Xyz => inverse3(Xyz::of(rotation).omega_from_rates()),
         OrientationRates::RotationVector => {
             let inverse = rotation_log_derivative(rotation.log());
             (inverse, 1.0 / inverse.determinant())

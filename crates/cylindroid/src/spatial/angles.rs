@@ -1,6 +1,6 @@
-//! Euler angles of a rotation: roll-pitch-yaw and ZYZ.
+//! Euler angles of a rotation: roll-pitch-yaw, ZYZ and XYZ.
 //!
-//! Formula  the pages of [`Rpy`] and [`Zyz`].
+//! Formula  the pages of [`Rpy`], [`Zyz`] and [`Xyz`].
 //!          The first angle is read from its two entries, the last one from the rows of
 //!          Rz(first)^T R, which cancels the rounding error of the first near gimbal lock.
 //! Units    rad; pitch in [-pi/2, pi/2], beta in [0, pi]
@@ -47,6 +47,65 @@ pub struct Zyz {
     pub beta: f64,
     /// Third, about the turned z.
     pub gamma: f64,
+}
+
+/// XYZ Euler angles: about x, the turned y, the turned z (rad). The Robotics Toolbox calls them yaw,
+/// pitch and roll of 'rpy/xyz'.
+///
+/// ```text
+/// R = Rx(alpha) Ry(beta) Rz(gamma)
+/// ```
+///
+/// At gimbal lock (|beta| = pi/2) gamma is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Xyz {
+    /// First, about x.
+    pub alpha: f64,
+    /// Second, about the turned y.
+    pub beta: f64,
+    /// Third, about the turned z.
+    pub gamma: f64,
+}
+
+/// The half turn that exchanges x and z and turns y round.
+fn exchange() -> Rotation {
+    Rotation::assume(Mat3::from_cols(Vec3::Z, -Vec3::Y, Vec3::X))
+}
+
+impl Xyz {
+    /// The same angles about the axes of [`Rpy`], after [`exchange`].
+    fn exchanged(self) -> Rpy {
+        Rpy { roll: self.gamma, pitch: -self.beta, yaw: self.alpha }
+    }
+
+    /// The rotation of these angles.
+    #[must_use]
+    pub fn rotation(self) -> Rotation {
+        exchange() * self.exchanged().rotation() * exchange()
+    }
+
+    /// The angles of a rotation, beta in [-pi/2, pi/2].
+    ///
+    /// ```
+    /// use cylindroid::spatial::{Rotation, Xyz};
+    ///
+    /// let angles = Xyz::of(Rotation::about_z(0.3));
+    /// assert_eq!((angles.alpha, angles.beta), (0.0, 0.0));
+    /// assert!((angles.gamma - 0.3).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn of(rotation: Rotation) -> Self {
+        let Rpy { roll, pitch, yaw } = Rpy::of(exchange() * rotation * exchange());
+        Self { alpha: yaw, beta: -pitch, gamma: roll }
+    }
+
+    /// `omega = E rates`: from (alpha, beta, gamma) rates to the angular velocity in the axes of
+    /// frame a of `a_from_b`. det E = cos(beta).
+    #[must_use]
+    pub fn omega_from_rates(self) -> Mat3 {
+        let ((sa, ca), (sb, cb)) = (sin_cos(self.alpha), sin_cos(self.beta));
+        Mat3::from_cols(Vec3::X, Vec3::new(0.0, ca, sa), Vec3::new(sb, -sa * cb, ca * cb))
+    }
 }
 
 impl Rpy {

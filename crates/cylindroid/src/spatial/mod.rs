@@ -17,7 +17,7 @@ mod vec3;
 mod vector3_like;
 
 pub(crate) use aligned_pose::AlignedPose;
-pub use angles::{Rpy, Zyz};
+pub use angles::{Rpy, Xyz, Zyz};
 pub use exp::{
     Derivative6, exp, exp_derivative, log, log_derivative, rotation_exp_derivative,
     rotation_log_derivative,

@@ -1,6 +1,6 @@
 use cylindroid::kinematics::{Chain, OrientationRates, velocity_conversion};
 use cylindroid::model::{JointKind, JointSpec};
-use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3, Zyz, log};
+use cylindroid::spatial::{Pose, Rotation, Rpy, Twist, Vec3, Xyz, Zyz, log};
 use cylindroid::{EndEffector, Matrix, Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::{
@@ -206,7 +206,8 @@ fn analytical_jacobians_by_finite_differences() {
     let mut random = Random(36);
     let robot = catalogue::load("panda").unwrap();
     let h = 1e-6;
-    for kind in [OrientationRates::Rpy, OrientationRates::Zyz, OrientationRates::RotationVector] {
+    use OrientationRates as Rates;
+    for kind in [Rates::Rpy, Rates::Zyz, Rates::Xyz, Rates::RotationVector] {
         for _ in 0..20 {
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
@@ -227,6 +228,10 @@ fn analytical_jacobians_by_finite_differences() {
                     }
                     OrientationRates::Zyz => {
                         let a = Zyz::of(pose.rotation);
+                        [a.alpha, a.beta, a.gamma]
+                    }
+                    OrientationRates::Xyz => {
+                        let a = Xyz::of(pose.rotation);
                         [a.alpha, a.beta, a.gamma]
                     }
                     OrientationRates::RotationVector => pose.rotation.log().to_array(),

@@ -1,7 +1,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use cylindroid::spatial::{
-    Pose, Quaternion, Rotation, Rpy, Twist, Vec3, Wrench, Zyz, exp, exp_derivative, log,
+    Pose, Quaternion, Rotation, Rpy, Twist, Vec3, Wrench, Xyz, Zyz, exp, exp_derivative, log,
     log_derivative, rotation_exp_derivative, rotation_log_derivative,
 };
 
@@ -209,6 +209,16 @@ fn angles_round_trip_also_at_gimbal_lock() {
                 "zyz",
                 &entries(Zyz::of(zyz).rotation().matrix()),
                 &entries(zyz.matrix()),
+                4e-15,
+            );
+            let xyz = Xyz { alpha: a, beta: middle, gamma: c }.rotation();
+            let about = |axis, angle| Rotation::about(axis, angle).unwrap();
+            let expected = about(Vec3::X, a) * about(Vec3::Y, middle) * about(Vec3::Z, c);
+            assert_close("xyz", &entries(xyz.matrix()), &entries(expected.matrix()), 1e-15);
+            assert_close(
+                "angles of xyz",
+                &entries(Xyz::of(xyz).rotation().matrix()),
+                &entries(xyz.matrix()),
                 4e-15,
             );
             let q = rpy.to_quaternion();

@@ -20,7 +20,7 @@ use cylindroid::model::formats::dh::{Arm, Convention, Row};
 use cylindroid::model::formats::{srdf, urdf};
 use cylindroid::model::*;
 use cylindroid::screws::{Complement, ScrewOptions};
-use cylindroid::spatial::{Mat3, Quaternion, Rotation, Rpy, Zyz};
+use cylindroid::spatial::{Mat3, Quaternion, Rotation, Rpy, Xyz, Zyz};
 use cylindroid::sweep::*;
 use cylindroid::*;
 
@@ -279,6 +279,7 @@ fn spatial(world: &mut World) {
     all(world, &[Mat3::skew(Vec3::X), Rotation::IDENTITY.matrix()]);
     all(world, &[Rpy::default()]);
     all(world, &[Zyz::default()]);
+    all(world, &[Xyz::default()]);
     let zero = Quaternion { w: 0.0, x: 0.0, y: 0.0, z: 0.0 };
     all(world, &[zero, Quaternion { w: 1.0, ..zero }]);
     all(world, &[ScrewOptions::default()]);
@@ -388,7 +389,8 @@ fn inverses(world: &mut World) {
     for (_, frame) in ReferenceFrame::NAMES {
         world.keep(frame);
     }
-    all(world, &[OrientationRates::Rpy, OrientationRates::Zyz, OrientationRates::RotationVector]);
+    use OrientationRates as Rates;
+    all(world, &[Rates::Rpy, Rates::Zyz, Rates::Xyz, Rates::RotationVector]);
     all(world, &[HyperbolicOptions::default()]);
     all(world, &[Weights::default()]);
     all(world, &[PolarKind::Positive, PolarKind::Signed]);

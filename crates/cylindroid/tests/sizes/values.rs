@@ -338,6 +338,7 @@ values! {
     spatial::Twist,
     spatial::Vec3,
     spatial::Wrench,
+    spatial::Xyz,
     spatial::Zyz,
     sweep::Axis,
     sweep::AxisKinds,

@@ -115,6 +115,7 @@ fn orientation_rates(angles: Angles) -> (OrientationRates, &'static str) {
     match angles {
         Angles::Rpy => (OrientationRates::Rpy, "rpy"),
         Angles::Zyz => (OrientationRates::Zyz, "zyz"),
+        Angles::Xyz => (OrientationRates::Xyz, "xyz"),
         Angles::RotationVector => (OrientationRates::RotationVector, "rotation-vector"),
     }
 }
@@ -135,7 +136,7 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
     if let Some(analytical) = &report.analytical {
         let angles = match analytical.angles {
             "rpy" => ["roll rate", "pitch rate", "yaw rate"],
-            "zyz" => ["alpha rate", "beta rate", "gamma rate"],
+            "zyz" | "xyz" => ["alpha rate", "beta rate", "gamma rate"],
             _ => ["r_x rate", "r_y rate", "r_z rate"],
         };
         rows[3..].copy_from_slice(&angles);

@@ -64,6 +64,9 @@ calls! {
     spatial::Wrench::at_point;
     spatial::Wrench::pitch_form;
     spatial::Wrench::raised;
+    spatial::Xyz::of;
+    spatial::Xyz::omega_from_rates;
+    spatial::Xyz::rotation;
     spatial::Zyz::of;
     spatial::Zyz::omega_from_rates;
     spatial::Zyz::rotation;
