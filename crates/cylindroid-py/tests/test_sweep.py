@@ -92,6 +92,8 @@ def test_folders(tmp_path):
         assert table.column_names == list(expected)
         about = json.loads(table.schema.metadata[b"cylindroid"])
         assert [column["name"] for column in about["columns"]] == list(expected)
+        for entry in ("model", "frame", "frame_from_tool", "length"):
+            assert about[entry] == manifest["recipe"][entry]
         for name, values in expected.items():
             own = table[name].to_numpy()
             assert np.array_equal(own, values[first : first + len(own)], equal_nan=own.dtype == float)

@@ -1,4 +1,5 @@
-"""Robots of the Robotics Toolbox as mechanisms: their links, by the attributes that they have.
+"""Robots of the Robotics Toolbox as mechanisms: their links, by the attributes that they have; and its
+members that `cylindroid.rtb` does not have.
 
 The Toolbox is not imported: any object with these attributes is read.
 
@@ -16,6 +17,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import InvalidOptionError, Mechanism, parse
+
+#: What to use for members of the Toolbox that are not here.
+INSTEAD = {
+    "ets twists dhunique A a alpha d theta offset mdh": "Mechanism.joint_axes and Mechanism.fk_all",
+    "ikine_a ikine_analytic ikine_6s analytic_ik isspherical": "Mechanism.ik, which uses closed "
+    "forms",
+    "jtraj": "cylindroid.JointMove",
+    "plot_ellipse": "cylindroid.plot.ellipsoid",
+    "teach": "cylindroid.show",
+    "inertia r": "Mechanism.mass_matrix",
+    "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
+    "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
+    "partial_fkine0": "Mechanism.hessian",
+    "links link_dict dfs_links hierarchy showgraph dotfile nlinks nbranches": "Mechanism.joints and "
+    "Mechanism.links",
+    "base base_link tool ee_links": "Mechanism.frames, and tool= of fkine and jacob0",
+    "URDF urdf_string urdf_filepath": "cylindroid.load",
+    "rne rne_python fdyn accel accel_x coriolis coriolis_x cinertia gravload gravload_x "
+    "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap": "",
+    "addconfiguration addconfiguration_attr attach attach_to copy delete_rne dynchanged "
+    "basemesh fkine_geometry fkine_path get_path graph linkcolormap segments symbolic todegrees "
+    "toradians update gravity grippers meshdir hasdynamics hascollision hasgeometry comment "
+    "manufacturer keywords payload_capacity configurations_str config_validate jointdynamics "
+    "control_mode default_backend set_default_backend": "",
+}
+
+#: Options of the Toolbox's searches for inverse kinematics.
+SEARCH = {"k", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
+
+
+class NotHere(NotImplementedError, AttributeError):
+    """A member of the Toolbox that is not here; for `hasattr` a missing attribute."""
+
+
+def instead_of(name: str) -> str | None:
+    """What does the same as a member of the Toolbox, empty if nothing does; None of other names."""
+    found = (instead for names, instead in INSTEAD.items() if name in names.split())
+    return next(found, None)
+
 
 _ROOT = "base of the links"
 _AXES = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}

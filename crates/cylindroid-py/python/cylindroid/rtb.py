@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import InvalidOptionError, Mechanism, load
-from ._toolbox import is_toolbox_robot, mechanism_of
+from ._toolbox import SEARCH, NotHere, instead_of, is_toolbox_robot, mechanism_of
 
 __all__ = ["IKSolution", "Robot"]
 
@@ -37,39 +37,6 @@ _AXES = {
     "trans": "x,y,z",
     "rot": "rx,ry,rz",
 }
-
-
-#: What to use for members of the Toolbox that are not here.
-_INSTEAD = {
-    "ets twists dhunique A a alpha d theta offset mdh": "Mechanism.joint_axes and Mechanism.fk_all",
-    "ikine_a ikine_analytic ikine_6s analytic_ik isspherical": "Mechanism.ik, which uses closed "
-    "forms",
-    "jtraj": "cylindroid.JointMove",
-    "plot_ellipse": "cylindroid.plot.ellipsoid",
-    "teach": "cylindroid.show",
-    "inertia r": "Mechanism.mass_matrix",
-    "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
-    "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
-    "partial_fkine0": "Mechanism.hessian",
-    "links link_dict dfs_links hierarchy showgraph dotfile nlinks nbranches": "Mechanism.joints and "
-    "Mechanism.links",
-    "base base_link tool ee_links": "Mechanism.frames, and tool= of fkine and jacob0",
-    "URDF urdf_string urdf_filepath": "cylindroid.load",
-    "rne rne_python fdyn accel accel_x coriolis coriolis_x cinertia gravload gravload_x "
-    "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap": "",
-    "addconfiguration addconfiguration_attr attach attach_to copy delete_rne dynchanged "
-    "basemesh fkine_geometry fkine_path get_path graph linkcolormap segments symbolic todegrees "
-    "toradians update gravity grippers meshdir hasdynamics hascollision hasgeometry comment "
-    "manufacturer keywords payload_capacity configurations_str config_validate jointdynamics "
-    "control_mode default_backend set_default_backend": "",
-}
-
-#: Options of the Toolbox's searches for inverse kinematics.
-_SEARCH = {"k", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
-
-
-class _NotHere(NotImplementedError, AttributeError):
-    """A member of the Toolbox that is not here; for `hasattr` a missing attribute."""
 
 
 @dataclass(frozen=True)
@@ -132,10 +99,9 @@ class Robot:
         configs = self.__dict__.get("configs", {})
         if name in configs:
             return configs[name].copy()
-        for names, instead in _INSTEAD.items():
-            if name in names.split():
-                use = f"; use {instead}" if instead else ""
-                raise _NotHere(f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb{use}")
+        if (instead := instead_of(name)) is not None:
+            use = f"; use {instead}" if instead else ""
+            raise NotHere(f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb{use}")
         raise AttributeError(f"'Robot' object has no attribute '{name}'")
 
     @property
@@ -260,7 +226,7 @@ class Robot:
         """Raises if `start` is not the base: velocities are relative to the world."""
         moves = start is not None and np.any(self.mechanism.jacobian(self.qr, start))
         if moves:
-            raise _NotHere(
+            raise NotHere(
                 f"start = {start!r} moves: Jacobians and targets are relative to the world here"
             )
 
@@ -445,10 +411,10 @@ class Robot:
             Within joint limits, always.
         """
         for name in search:
-            if name not in _SEARCH:
+            if name not in SEARCH:
                 raise TypeError(f"ikine_LM() has no argument {name!r}")
         if not joint_limits:
-            raise _NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
+            raise NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
         if start is not None:
             self._from_base(start)
             Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
@@ -502,33 +468,19 @@ class Robot:
 
     ik_NR = ik_GN = ik_LM
 
-    def _components(self, opt: str) -> str:
-        if opt not in ("trans", "rot"):
-            raise ValueError(f"opt = {opt!r}: 'trans' or 'rot'")
-        return _AXES[opt]
-
     def _ellipse(self, q: ArrayLike | None, opt: str, kind: str, options: dict[str, Any]) -> Any:
         from . import plot
 
+        if opt not in ("trans", "rot"):
+            raise ValueError(f"opt = {opt!r}: 'trans' or 'rot'")
         q = self.mechanism.ordered(self.q if q is None else q)
-        report = self.mechanism.manipulability(
-            q, reference=self._end, task=self._components(opt)
-        )
+        report = self.mechanism.manipulability(q, reference=self._end, task=_AXES[opt])
         return plot.ellipsoid(getattr(report, kind), self.fkine(q)[:3, 3], **options)
 
     def vellipse(self, q: ArrayLike | None = None, opt: str = "trans", **options: Any) -> Any:
-        """Draws the ellipsoid of velocities: `cylindroid.plot.ellipsoid`, whose options it takes.
+        """Draws the ellipsoid of velocities, 'trans' or 'rot'; returns the axes of matplotlib.
 
-        Parameters
-        ----------
-        q : array_like, (n,), optional
-            Default: `q`.
-        opt : str
-            'trans' or 'rot'.
-
-        Returns
-        -------
-        The axes of matplotlib.
+        The options are those of `cylindroid.plot.ellipsoid`. Default of q: `Robot.q`.
         """
         return self._ellipse(q, opt, "kinematic", options)
 

@@ -2,8 +2,8 @@
 //!
 //! Shapes   one row group; columns without dictionary, compression and statistics: random numbers
 //!          do not compress, and a page is then a copy. Names are stored by dictionary
-//! Units    in the metadata `cylindroid` of the file: a JSON object with name, unit and description
-//!          of each column
+//! Units    in the metadata `cylindroid` of the file: a JSON object with the model, the frame, its tool
+//!          point, the characteristic length [m], and name, unit and description of each column
 //! Checked  tests/sweep/folder.rs
 
 use std::fs::File;
@@ -22,29 +22,34 @@ use serde_json::json;
 
 use super::checksum::Checksum;
 use super::manifest::{Part, cannot_write};
+use super::recipe::Recipe;
 use super::table::{Column, ColumnKind, Values};
 use crate::error::{Error, Result};
 
+/// The recipe and the columns of a table.
+pub(super) type What<'a> = (&'a Recipe, &'a [Column]);
+
 /// Writes the columns, and makes the file durable.
-pub(super) fn write(path: &Path, columns: &[Column], values: &[Values]) -> Result<Part> {
+pub(super) fn write(path: &Path, what: What<'_>, values: &[Values]) -> Result<Part> {
     let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
-    let (part, file) = into_sink(path, file, (columns, values))?;
+    let (part, file) = into_sink(path, file, what, values)?;
     file.sync_all().map_err(|error| cannot_write(path, &error))?;
     Ok(part)
 }
 
 /// The bytes of the same file.
-pub(super) fn bytes(name: &str, columns: &[Column], values: &[Values]) -> Result<(Part, Vec<u8>)> {
-    into_sink(Path::new(name), Vec::new(), (columns, values))
+pub(super) fn bytes(name: &str, what: What<'_>, values: &[Values]) -> Result<(Part, Vec<u8>)> {
+    into_sink(Path::new(name), Vec::new(), what, values)
 }
 
 fn into_sink<W: Write + Send>(
     path: &Path,
     inner: W,
-    (columns, values): (&[Column], &[Values]),
+    what: What<'_>,
+    values: &[Values],
 ) -> Result<(Part, W)> {
     let mut sink = Summed { inner, checksum: Checksum::new(), bytes: 0, failed: None };
-    let written = into(&mut sink, columns, values);
+    let written = into(&mut sink, what, values);
     if let Some(error) = sink.failed {
         return Err(cannot_write(path, &error));
     }
@@ -121,20 +126,26 @@ fn schema(columns: &[Column]) -> std::result::Result<TypePtr, ParquetError> {
 
 fn into<W: Write + Send>(
     sink: &mut Summed<W>,
-    columns: &[Column],
+    (recipe, columns): What<'_>,
     values: &[Values],
 ) -> std::result::Result<(), ParquetError> {
-    let about = columns
+    let described = columns
         .iter()
         .map(|c| json!({"name": c.name, "unit": c.unit, "description": c.description}));
-    let about = json!({ "columns": about.collect::<Vec<_>>() }).to_string();
+    let mut about = json!({ "columns": described.collect::<Vec<_>>() });
+    for entry in ["model", "frame", "frame_from_tool", "length"] {
+        about[entry] = recipe.0[entry].clone();
+    }
     let mut properties = WriterProperties::builder()
         .set_created_by(concat!("cylindroid ", env!("CARGO_PKG_VERSION")).to_owned())
         .set_compression(Compression::UNCOMPRESSED)
         .set_dictionary_enabled(false)
         .set_statistics_enabled(EnabledStatistics::None)
         .set_offset_index_disabled(true)
-        .set_key_value_metadata(Some(vec![KeyValue::new("cylindroid".to_owned(), about)]));
+        .set_key_value_metadata(Some(vec![KeyValue::new(
+            "cylindroid".to_owned(),
+            about.to_string(),
+        )]));
     for column in columns.iter().filter(|c| c.kind == ColumnKind::Text) {
         let path = ColumnPath::new(vec![column.name.clone()]);
         properties = properties.set_column_dictionary_enabled(path, true);

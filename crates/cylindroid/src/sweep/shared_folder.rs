@@ -93,7 +93,7 @@ impl Sweep {
     /// As [`Sweep::part`].
     pub fn part_file(&self, part: usize) -> Result<(Part, Vec<u8>)> {
         let Table { columns, values } = self.part(part)?;
-        parquet_file::bytes(&part_name(part), &columns, &values)
+        parquet_file::bytes(&part_name(part), (&self.recipe, &columns), &values)
     }
 
     /// Writes the file of a part, under another name first. A part that is `listed` is computed only
@@ -125,7 +125,8 @@ impl Sweep {
         }
         self.fill(self.rows_of(part), memory)?;
         let temporary = path.with_file_name(temporary_name(part));
-        let written = parquet_file::write(&temporary, &self.columns, memory).and_then(|own| {
+        let what = (&self.recipe, &self.columns[..]);
+        let written = parquet_file::write(&temporary, what, memory).and_then(|own| {
             fs::rename(&temporary, &path).map_err(|error| cannot_write(&path, &error))?;
             Ok((own, true))
         });

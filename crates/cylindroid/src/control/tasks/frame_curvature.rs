@@ -5,7 +5,6 @@
 //! Valid    frames on trees
 //! Checked  tests/it/servo/task_edges.rs
 
-use super::motions::Motions;
 use super::objective::TaskObjective;
 use super::options::TaskServoOptions;
 use crate::control::servo::{TaskScaling, TaskSpace, curvature_into};
@@ -28,14 +27,13 @@ impl FrameCurvature {
     pub(super) fn of(
         objective: &TaskObjective,
         mechanism: &Mechanism,
-        (motions, limits): (&Motions, &[Limits]),
+        limits: &[Limits],
         options: &TaskServoOptions,
     ) -> Option<Box<Self>> {
-        let (TaskObjective::Frame { end_effector, components, .. }, Motions::Tree(_)) =
-            (objective, motions)
-        else {
+        let TaskObjective::Frame { end_effector, components, .. } = objective else { return None };
+        if mechanism.is_closed() {
             return None;
-        };
+        }
         let chain = Chain::new(mechanism, *end_effector);
         let own: Vec<Limits> = chain.coordinates().iter().map(|&i| limits[i]).collect();
         let scaling = TaskScaling {

@@ -6,7 +6,8 @@
 use std::ops::Range;
 
 use super::frame_curvature::FrameCurvature;
-use super::options::StoppedBy;
+use super::objective::TaskObjective;
+use super::options::{MotionTask, StoppedBy};
 use crate::control::solver::active_set::DampedLevel;
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::linalg::{Basis, Matrix};
@@ -50,9 +51,40 @@ pub(super) struct Member {
     pub(super) row: Vec<f64>,
 }
 
+impl Stack {
+    /// The levels of tasks in n unknowns, the highest first, with the curvatures of their objectives.
+    pub(super) fn of_levels(
+        tasks: &[MotionTask],
+        n: usize,
+        curvature: impl Fn(&TaskObjective) -> Option<Box<FrameCurvature>>,
+    ) -> Vec<Self> {
+        let with_rows = || tasks.iter().enumerate().filter(|(_, t)| t.objective.rows() > 0);
+        let mut levels: Vec<usize> = with_rows().map(|(_, task)| task.level).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let stack = |level| {
+            let (mut first, mut members) = (0, Vec::new());
+            for (i, task) in with_rows().filter(|(_, task)| task.level == level) {
+                let rows = first..first + task.objective.rows();
+                first = rows.end;
+                members.push(Member::new(i, rows, n, curvature(&task.objective)));
+            }
+            let starts = members.iter().map(|m| m.rows.start).collect();
+            Self {
+                members,
+                level: ScaledLevel::new(starts, first, n),
+                turned: DampedLevel::new(first, n),
+                asked: vec![0.0; first],
+                left_out: 0.0,
+            }
+        };
+        levels.into_iter().map(stack).collect()
+    }
+}
+
 impl Member {
     /// Of a task in n unknowns.
-    pub(super) fn new(
+    fn new(
         task: usize,
         rows: Range<usize>,
         n: usize,
@@ -88,6 +120,18 @@ pub(super) struct TaskRows {
 }
 
 impl TaskRows {
+    /// Of an objective of a mechanism with n coordinates.
+    pub(super) fn new(objective: &TaskObjective, n: usize) -> Self {
+        let m = objective.rows();
+        Self {
+            measured_error: vec![0.0; m],
+            error: vec![0.0; m],
+            feed_forward: vec![0.0; m],
+            jacobian: Matrix::zeros(m, n),
+            is_length: (0..m).map(|i| objective.is_length(i)).collect(),
+        }
+    }
+
     /// Scale of a row: 1 / length of those that are lengths [1/m], 1 of angles.
     pub(super) fn unit(&self, row: usize, length: f64) -> f64 {
         if self.is_length[row] { 1.0 / length } else { 1.0 }

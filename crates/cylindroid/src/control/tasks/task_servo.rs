@@ -21,7 +21,7 @@ use super::braking_path::BrakingPath;
 use super::escape::Escape;
 use super::frame_curvature::FrameCurvature;
 use super::gradient::Gradient;
-use super::levels::{Member, Stack, TaskRows};
+use super::levels::{Stack, TaskRows};
 use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
@@ -30,9 +30,8 @@ use crate::control::servo::{
     BrakingState, Plant, Predictor, StallDetector, Status, acceleration_of, limits_of_loop_joints,
     limits_of_servo,
 };
-use crate::control::solver::active_set::{ActiveSet, DampedLevel};
+use crate::control::solver::active_set::ActiveSet;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::control::solver::hierarchy::ScaledLevel;
 use crate::control::solver::inequalities::Inequalities;
 use crate::error::{Error, Result};
 use crate::kinematics::State;
@@ -157,53 +156,12 @@ impl TaskServo {
         let desired_rates = has_jerks.then(|| vec![0.0; limits.len()]);
         let motions = Motions::new(mechanism, &options, &limits)?;
         let (u, v) = (motions.unknowns(), limits.len());
-        let rows = tasks
-            .iter()
-            .map(|task| {
-                let m = task.objective.rows();
-                TaskRows {
-                    measured_error: vec![0.0; m],
-                    error: vec![0.0; m],
-                    feed_forward: vec![0.0; m],
-                    jacobian: Matrix::zeros(m, n),
-                    is_length: (0..m).map(|i| task.objective.is_length(i)).collect(),
-                }
-            })
-            .collect();
-        let mut levels: Vec<usize> =
-            tasks.iter().filter(|t| t.objective.rows() > 0).map(|t| t.level).collect();
-        levels.sort_unstable();
-        levels.dedup();
-        let stacks: Vec<Stack> = levels
-            .iter()
-            .map(|&level| {
-                let mut first = 0;
-                let mut members = Vec::new();
-                for (i, task) in tasks.iter().enumerate() {
-                    let m = task.objective.rows();
-                    if task.level == level && m > 0 {
-                        let joints = (&motions, &limits[..]);
-                        // Directions that are kept are damped alike.
-                        let is_bent = !options.keep_directions;
-                        let curvature = is_bent.then(|| {
-                            FrameCurvature::of(&task.objective, mechanism, joints, &options)
-                        });
-                        let rows = first..first + m;
-                        members.push(Member::new(i, rows, u, curvature.flatten()));
-                        first += m;
-                    }
-                }
-                let starts = members.iter().map(|m| m.rows.start).collect();
-                let level = ScaledLevel::new(starts, first, u);
-                Stack {
-                    members,
-                    level,
-                    turned: DampedLevel::new(first, u),
-                    asked: vec![0.0; first],
-                    left_out: 0.0,
-                }
-            })
-            .collect();
+        let rows = tasks.iter().map(|task| TaskRows::new(&task.objective, n)).collect();
+        // Directions that are kept are damped alike.
+        let is_bent = !options.keep_directions;
+        let stacks = Stack::of_levels(&tasks, u, |objective| {
+            is_bent.then(|| FrameCurvature::of(objective, mechanism, &limits, &options)).flatten()
+        });
         let pairs = if options.collisions.is_some() { MOST_PAIRS } else { 0 };
         let distances = options.half_spaces.len() + pairs;
         let limit_rows = motions.limit_rows();
