@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
 use crate::shell::{cargo, root, run};
 
@@ -87,6 +87,8 @@ pub(crate) fn use_installed(prefix: &Path, folder: &Path) -> Result<()> {
         .env("PKG_CONFIG_PATH", libraries.join("pkgconfig"))
         .output()
         .context("cannot start pkg-config")?;
+    let fault = String::from_utf8_lossy(&pkg_config.stderr);
+    ensure!(pkg_config.status.success(), "pkg-config: {fault}");
     let flags = String::from_utf8(pkg_config.stdout)?;
     let program = folder.join("by-pkg-config");
     let mut compile = Command::new("cc");

@@ -120,6 +120,10 @@ int main(void) {
     double inverse[42];
     size_t rank = 0;
     CHECK(cyl_inverse(jacobian, 6, 7, "truncated", inverse, &rank));
+    double in_place[42];
+    memcpy(in_place, jacobian, sizeof in_place);
+    CHECK(cyl_inverse(in_place, 6, 7, "truncated", in_place, NULL));
+    EXPECT(memcmp(in_place, inverse, sizeof in_place) == 0);
     EXPECT(rank == 6);
     double one = 0.0; /* (J J+)[0, 0] */
     for (int k = 0; k < 7; k++) one += jacobian[6 * k] * inverse[k];

@@ -104,12 +104,12 @@ fn samples_of_closed_chains() {
 }
 
 /// Number of parts of [`start`].
-const PARTS: usize = 480;
+const PARTS: usize = 2000;
 
 fn start(folder: &Path, resume: bool) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cylindroid"));
     command
-        .args(["sweep", "youbot", "--samples", "240000", "--part-rows", "500", "--threads", "2"])
+        .args(["sweep", "youbot", "--samples", "1000000", "--part-rows", "500", "--threads", "2"])
         .args(["--quantities", "pose,yoshikawa,gibson_hunt", "--out"])
         .arg(folder)
         .stdout(Stdio::null())

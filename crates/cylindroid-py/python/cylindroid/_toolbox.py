@@ -44,7 +44,7 @@ INSTEAD = {
 }
 
 #: Options of the Toolbox's searches for inverse kinematics.
-SEARCH = {"k", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
+SEARCH = {"k", "kj", "ks", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
 
 
 class NotHere(NotImplementedError, AttributeError):

@@ -224,10 +224,12 @@ class Robot:
 
     def _from_base(self, start: str | None) -> None:
         """Raises if `start` is not the base: velocities are relative to the world."""
-        moves = start is not None and np.any(self.mechanism.jacobian(self.qr, start))
-        if moves:
+        if start is None:
+            return
+        turned = np.any(self.mechanism.fk(self.qr, start)[:3, :3] != np.eye(3))
+        if turned or np.any(self.mechanism.jacobian(self.qr, start)):
             raise NotHere(
-                f"start = {start!r} moves: Jacobians and targets are relative to the world here"
+                f"start = {start!r} moves or is turned: Jacobians have the axes of the world here"
             )
 
     def jacob0(
@@ -412,11 +414,12 @@ class Robot:
         """
         for name in search:
             if name not in SEARCH:
-                raise TypeError(f"ikine_LM() has no argument {name!r}")
+                raise TypeError(f"inverse kinematics has no argument {name!r}")
         if not joint_limits:
             raise NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
         if start is not None:
-            self._from_base(start)
+            if np.any(self.mechanism.jacobian(self.qr, start)):
+                raise NotHere(f"start = {start!r} moves: targets are in frames at rest here")
             Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
         task = None
         if mask is not None:

@@ -31,6 +31,7 @@ pub(crate) use trig::sin_cos;
 
 /// How kernels round: of two processors with one name all results are the same to the bit.
 /// Registers of four and eight lanes agree, plain numbers round each product.
+#[cfg(feature = "sweep")]
 #[must_use]
 pub(crate) fn arithmetic() -> &'static str {
     #[cfg(target_arch = "x86_64")]

@@ -82,7 +82,7 @@ impl Sweep {
         let parts = RefCell::new(shared.listed.clone());
         let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
         let finished = Cell::new(0);
-        let (mut last, mut pause) = (Instant::now(), BETWEEN_MANIFESTS);
+        let (mut last, mut pause, mut noted) = (Instant::now(), BETWEEN_MANIFESTS, 0);
         let work = |memory: &mut Vec<Values>, part: usize| {
             self.write_part_with(memory, folder, part, shared.listed[part].as_ref())
         };
@@ -95,7 +95,8 @@ impl Sweep {
             parts.borrow_mut()[part] = Some(own);
         };
         let tick = || {
-            if last.elapsed() >= pause {
+            if last.elapsed() >= pause && finished.get() > noted {
+                noted = finished.get();
                 let start = Instant::now();
                 shared.write_manifest(self, &parts.borrow())?;
                 last = Instant::now();

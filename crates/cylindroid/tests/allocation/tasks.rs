@@ -14,7 +14,9 @@ use super::{count, frame};
 /// Many tasks, with limits that bite and an obstacle in the way.
 #[test]
 fn many_tasks_allocate_nothing() {
-    for name in ["panda", "ur5e", "youbot"] {
+    let both = [true, false];
+    let all = ["panda", "ur5e", "youbot"].into_iter().flat_map(|name| both.map(|b| (name, b)));
+    for (name, keep_directions) in all {
         let mut builder = Mechanism::builder(name);
         let robot = catalogue::load(name).unwrap();
         for link in robot.links() {
@@ -47,6 +49,7 @@ fn many_tasks_allocate_nothing() {
         ];
         let mut options = TaskServoOptions::new(&robot);
         options.acceleration = 5.0;
+        options.keep_directions = keep_directions;
         options.collisions = Some(CollisionAvoidance { model, gap: 0.01, margin: 0.2 });
         let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
         servo.step(&q).unwrap();

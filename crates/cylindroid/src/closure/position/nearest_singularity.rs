@@ -62,6 +62,7 @@ impl CurveTracer {
         seed: &[f64],
         about: &CentredNorm,
     ) -> Result<Option<(Vec<f64>, f64)>> {
+        self.cross_curves();
         let Some(mut here) = self.corrected(seed.to_vec())? else { return Ok(None) };
         let mut size = about.size(&about.offset(&here.q));
         let mut trust = f64::INFINITY;

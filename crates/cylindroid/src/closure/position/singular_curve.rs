@@ -8,13 +8,14 @@
 //! Units    none: lengths are divided by the characteristic length
 //! Valid    where g changes its sign or falls to zero with the distance. Curves that cross are followed
 //!          straight on. Where a singular motion goes on (a finite self-motion: an arm whose tip is on
-//!          its first axis), what vanishes is a surface; it is crossed at right angles to that motion
+//!          its first axis), what vanishes is a surface; it is crossed at right angles to that motion, if
+//!          the motion is straight in the coordinates
 //! Fails    where the curve has a corner; it ends there
 //! Why so   a contour of a grid is as accurate as its cells; the smallest singular value with fixed
 //!          singular vectors is smooth and needs no derivative of a determinant
 //! Source   Allgower & Georg 1990, chapters 2 and 6; Bohigas et al. 2013 for singularities as
 //!          solutions of extended systems
-//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs
+//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/options.rs
 
 use super::configuration_signature::{Landmarks, link_poses};
 use super::coordinates::{columns, largest_change, moved};
@@ -37,7 +38,7 @@ const STEPS: (f64, f64) = (1e-9, 0.1);
 const STEPS_OF_BOX: f64 = 200.0;
 /// Cosine of the largest turn of the tangent within a step.
 const TURN: f64 = 0.99;
-/// Length of a part of a self-motion by which it is known.
+/// Length of a part of a self-motion by which it is known [rad, or characteristic lengths].
 const SELF_MOTION: f64 = 0.05;
 /// Halvings that find the end of a curve at the boundary of its domain.
 const HALVINGS: usize = 60;
@@ -220,6 +221,11 @@ impl CurveTracer {
             }
         }
         Ok(motion)
+    }
+
+    /// Points are those of curves from here on.
+    pub(super) fn cross_curves(&mut self) {
+        self.self_motion = false;
     }
 
     /// [`Self::motion`] of the unknown.

@@ -8,13 +8,15 @@
 use super::objective::TaskObjective;
 use super::options::TaskServoOptions;
 use crate::control::servo::{TaskScaling, TaskSpace, curvature_into};
-use crate::kinematics::Chain;
+use crate::kinematics::{Chain, EndEffector};
 use crate::linalg::Matrix;
 use crate::model::{Limits, Mechanism};
+use crate::task::Task;
 
 /// The chain of a frame, and workspace.
 #[derive(Debug, Clone)]
 pub(super) struct FrameCurvature {
+    of: (EndEffector, Task),
     chain: Chain,
     space: TaskSpace,
     /// 6 x n for each joint of the chain.
@@ -43,7 +45,19 @@ impl FrameCurvature {
         };
         let (space, n) = (TaskSpace::new(scaling, &chain, &own), chain.n());
         let hessian = vec![Matrix::zeros(6, n); n];
-        Some(Box::new(Self { chain, space, hessian, own: Matrix::zeros(n, n) }))
+        Some(Box::new(Self {
+            of: (*end_effector, *components),
+            chain,
+            space,
+            hessian,
+            own: Matrix::zeros(n, n),
+        }))
+    }
+
+    /// False if the objective has become another one: the curvature is not that of it.
+    pub(super) fn is_of(&self, objective: &TaskObjective) -> bool {
+        matches!(objective, TaskObjective::Frame { end_effector, components, .. }
+            if (*end_effector, *components) == self.of)
     }
 
     /// Adds the curvature at `q` to that of other tasks: `left` is what is left of the error, scaled by

@@ -139,6 +139,7 @@ impl TaskServo {
                 false => Whole::Unclear,
             };
             *left_out = 0.0;
+            asked.copy_from_slice(&whole.target);
             match ended {
                 Whole::Performed => {
                     members.iter_mut().for_each(|m| (m.scale, m.stopped_by) = (1.0, None));
@@ -166,12 +167,7 @@ impl TaskServo {
                         let weight = (farthest / m.way).min(MOST_WEIGHT);
                         (m.rows.clone(), if weight.is_nan() { 1.0 } else { weight })
                     });
-                    asked.copy_from_slice(&whole.target);
                     let missing = self.set.reduce_target(whole, weak, error, weights);
-                    if !self.options.keep_directions {
-                        // Weak directions are damped by what bends them.
-                        whole.target.copy_from_slice(asked);
-                    }
                     *left_out = if size > 0.0 { missing / size } else { 0.0 };
                     linear.is_reduced = *left_out > 0.0;
                 }
@@ -196,30 +192,32 @@ impl TaskServo {
             }
             // The others share by their weights what is left: none of them comes first.
             load_turned(&mut turned.level, members, &level.whole);
+            let is_curved = members.iter().any(|m| m.is_curved);
             if self.options.keep_directions {
                 let errors = members.iter().filter(|m| m.direction_changed).map(|m| m.error);
                 let error = errors.fold(0.0, f64::max);
                 turned.damp_alike((linear.curvature * error).max(LEAST_DAMPING));
             } else {
+                // Weak directions are damped by what bends them, instead of left out.
+                turned.level.target.copy_from_slice(asked);
                 self.set.least_residual(&mut turned.level, STRAIGHT);
                 let DampedLevel { level: own, curvature, .. } = &mut *turned;
                 let left = own.left(self.set.point());
                 curvature.as_mut_slice().fill(0.0);
                 for member in members.iter_mut().filter(|m| m.direction_changed) {
-                    let (task, rows) = (&self.rows[member.task], member.rows.clone());
-                    let root = self.tasks[member.task].weight.sqrt();
+                    let (task, rows) = (&self.tasks[member.task], member.rows.clone());
                     // What limits leave of the error, or beyond the range of the tasks all of it.
-                    let (target, left) = (&level.whole.target[rows.clone()], &left[rows.clone()]);
-                    let size = norm(left).max(norm(target));
-                    let scale = if size > 0.0 { member.error / size } else { 0.0 };
-                    for (r, x) in member.left.iter_mut().enumerate() {
-                        *x = if member.is_curved {
-                            root * task.unit(r, length) * task.error[r]
-                        } else {
-                            scale * left[r]
-                        };
+                    let (target, left) = (&asked[rows.clone()], &left[rows.clone()]);
+                    let left = if member.is_curved { target } else { left };
+                    let gain = if task.gain > 0.0 { task.gain } else { USUAL_GAIN };
+                    let scale = (1.0 / gain).min(member.way / norm(left).max(f64::MIN_POSITIVE));
+                    for (x, left) in member.left.iter_mut().zip(left) {
+                        *x = scale * left;
                     }
-                    if let Some(of_frame) = &mut member.curvature {
+                    if let Some(of_frame) = &mut member.curvature
+                        && of_frame.is_of(&task.objective)
+                    {
+                        let root = task.weight.sqrt();
                         of_frame.add(self.state.q(), (&member.left, root), curvature);
                         continue;
                     }
@@ -229,9 +227,8 @@ impl TaskServo {
                         curvature[(j, j)] += damping * norm(column);
                     }
                 }
-                turned.damp(LEAST_DAMPING);
+                turned.damp(LEAST_DAMPING, is_curved);
             }
-            let is_curved = members.iter().any(|m| m.is_curved);
             self.stops.clear();
             self.set.solve_damped(turned, STRAIGHT, |row| self.stops.push(row));
             let turned = &mut turned.level;
@@ -251,10 +248,11 @@ impl TaskServo {
                 if !is_curved && linear.is_left_by(&level.whole, members, y) {
                     return false;
                 }
-                let left = turned.left(y);
+                asked.copy_from_slice(&level.whole.target);
+                let left = level.whole.left(y);
                 for member in &mut *members {
                     let rows = member.rows.clone();
-                    member.scale = share(&level.whole.target[rows.clone()], &left[rows]);
+                    member.scale = share(&asked[rows.clone()], &left[rows]);
                 }
             }
         }

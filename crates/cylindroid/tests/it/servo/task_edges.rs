@@ -120,6 +120,50 @@ fn arm_3r_rests_and_returns() {
     rests_and_returns("3r", [29, 29], [0.1, 0.1]);
 }
 
+/// An arm without limits that is almost straight: its target is inside, where the curvature of the task is
+/// negative and the linear task asks for hundreds of rad/s.
+#[test]
+fn straight_arms_without_limits_are_calm() {
+    let mut builder = Mechanism::builder("arm");
+    for (name, parent, link, x) in
+        [("shoulder", "world", "upper", 0.0), ("elbow", "upper", "fore", 0.5)]
+    {
+        builder.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * x),
+            ..JointSpec::new(name, JointKind::Revolute, parent, link)
+        });
+    }
+    builder.frame("tip", "fore", Pose::from_translation(Vec3::X * 0.5));
+    builder.tool("tip");
+    let robot = builder.build().unwrap();
+    for elbow in [0.1, 0.01, 1e-3, 1e-6] {
+        for keep_directions in [true, false] {
+            let mut q = vec![0.2, elbow];
+            let now = robot.state(&q).unwrap().pose(robot.tool());
+            let objective = TaskObjective::Frame {
+                end_effector: robot.tool().into(),
+                components: Task::POSITION,
+                target: Pose { translation: now.translation * 0.7, ..now }.into(),
+            };
+            let options =
+                TaskServoOptions { dt: DT, keep_directions, ..TaskServoOptions::new(&robot) };
+            let tasks = vec![MotionTask::new("hand", objective)];
+            let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
+            let mut fastest = 0.0_f64;
+            for _ in 0..(20.0 / DT) as usize {
+                servo.step(&q).unwrap();
+                let rates = servo.joint_velocities().iter();
+                fastest = rates.fold(fastest, |most, rate| most.max(rate.abs()));
+                servo.advance(&mut q);
+            }
+            let error = servo.reports()[0].position_error;
+            println!("elbow {elbow}, {keep_directions}: {fastest} rad/s, {error} m");
+            assert!(fastest < 20.0, "{elbow}, {keep_directions}: {fastest} rad/s");
+            assert!(error < 1e-3, "{elbow}, {keep_directions}: {error} m");
+        }
+    }
+}
+
 /// A straight arm whose elbow is at its limit, exactly or almost: its target lies inside, and no velocity
 /// leads there. It folds, whatever is kept and whatever tasks are below.
 #[test]

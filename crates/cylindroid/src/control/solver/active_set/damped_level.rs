@@ -1,10 +1,12 @@
 //! A level with a damping that depends on the direction.
 //!
 //! Formula  min |A y - b|^2 + y^T (P(C) + d) y = |[A; B] y - [b; 0]|^2 + d |y|^2, B^T B = P(C), P the
-//!          part with positive eigenvalues
+//!          part with positive eigenvalues, or with the absolute values of all: at a saddle A has
+//!          nothing that bounds the motion
 //! Shapes   A: m x n, b: m, B and C: n x n, C symmetric
 //! Why so   one damping for all slows motions that are far from any edge for the sake of others
-//! Source   Nocedal & Wright, Numerical Optimization, 2006, sections 3.4 and 10.1
+//! Source   Nocedal & Wright, Numerical Optimization, 2006, sections 3.4 and 10.1; Dauphin et al. 2014 for
+//!          absolute values
 //! Checked  src/control/solver/hierarchy/tests.rs::curved_levels_*, ::damped_levels_*
 
 use super::Level;
@@ -49,8 +51,9 @@ impl DampedLevel {
         (self.damping, self.is_curved) = (damping, false);
     }
 
-    /// Damps directions by their curvature, all of them by `damping` at least.
-    pub(in crate::control) fn damp(&mut self, damping: f64) {
+    /// Damps directions by their curvature, those of negative curvature as well if `both_signs`, and
+    /// all of them by `damping` at least.
+    pub(in crate::control) fn damp(&mut self, damping: f64, both_signs: bool) {
         self.damp_alike(damping);
         let (m, n) = (self.level.rows.rows(), self.level.rows.cols());
         // Shifted: then singular values are eigenvalues.
@@ -68,7 +71,9 @@ impl DampedLevel {
             let column = self.stacked.rows.column_mut(j);
             column[..m].copy_from_slice(self.level.rows.column(j));
             for (i, x) in column[m..].iter_mut().enumerate() {
-                *x = (self.eigen.value(i) - shift).max(0.0).sqrt() * self.eigen.v(i)[j];
+                let value = self.eigen.value(i) - shift;
+                let counted = if both_signs { value.abs() } else { value.max(0.0) };
+                *x = counted.sqrt() * self.eigen.v(i)[j];
             }
         }
     }

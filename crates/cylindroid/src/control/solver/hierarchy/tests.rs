@@ -234,13 +234,16 @@ fn curved_levels_are_the_optima_of_clarabel() {
         level.level.target.copy_from_slice(&b);
         level.curvature =
             Matrix::from_fn(n, n, |i, j| (0..n).map(|k| q[(i, k)] * c[k] * q[(k, j)]).sum());
-        level.damp(damping);
+        let both_signs = round % 2 == 1;
+        level.damp(damping, both_signs);
         set.solve_damped(&mut level, Precision::EXACT, |_| {});
         problem.assert_feasible(set.point(), "curved level");
         let rows =
             Matrix::from_fn(m + 2 * n, n, |i, j| match (i.checked_sub(m), i.checked_sub(m + n)) {
                 (None, _) => a[(i, j)],
-                (Some(k), None) => c[k].max(0.0).sqrt() * q[(k, j)],
+                (Some(k), None) => {
+                    if both_signs { c[k].abs() } else { c[k].max(0.0) }.sqrt() * q[(k, j)]
+                }
                 (_, Some(k)) => damping.sqrt() * f64::from(u8::from(k == j)),
             });
         let target = [&b[..], &vec![0.0; 2 * n]].concat();

@@ -91,7 +91,8 @@ impl<'d> Mjcf<'d> {
         let gears = element.list(&self.reader, "gear")?.unwrap_or_default();
         let gear = gears.first().copied();
         if gears.iter().skip(1).any(|x| *x != 0.0) {
-            let why = "a joint of one coordinate has one gear; limits of others are not read";
+            let why =
+                "joints of one coordinate have one gear; efforts of joints of several are not read";
             let place = element.source_element("gear").unwrap_or(node);
             self.reader.note(place, format!("attribute 'gear' of <{tag}>"), why, &name);
         }
