@@ -3,7 +3,7 @@
 //! Formula  `servo/edge.rs`, of each frame over the joints of its chain
 //! Shapes   u x u over all unknowns, of which those of the chain are not zero
 //! Valid    frames on trees
-//! Checked  tests/it/servo/task_edges.rs
+//! Checked  tests in this file, tests/it/servo/task_edges.rs
 
 use super::objective::TaskObjective;
 use super::options::TaskServoOptions;
@@ -68,6 +68,60 @@ impl FrameCurvature {
         for (j, &column) in self.chain.coordinates().iter().enumerate() {
             for (i, &row) in self.chain.coordinates().iter().enumerate() {
                 out[(row, column)] += root * self.own[(i, j)];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kinematics::ReferenceFrame;
+    use crate::model::catalogue;
+
+    /// -left . dA/dq by central differences of the scaled rows A, symmetrised: of frames in the middle
+    /// and at the end, with weights of the task and of joints, added to what is there.
+    #[test]
+    fn curvatures_are_those_of_differences() {
+        let robot = catalogue::load("panda").unwrap();
+        let (n, root, h) = (robot.n(), 1.5, 1e-6);
+        let mut options = TaskServoOptions::new(&robot);
+        options.joint_weights = (0..n).map(|j| 1.0 + 0.5 * j as f64).collect();
+        let limits: Vec<Limits> = robot.coordinates().iter().map(|c| c.limits).collect();
+        let left = [0.1, -0.2, 0.15, 0.3, -0.1, 0.05];
+        let q: Vec<f64> = robot.home().iter().map(|x| x + 0.2).collect();
+        for name in ["link4", robot.frame_of(robot.tool()).name.as_str()] {
+            let frame = robot.frame(name).unwrap();
+            let target = robot.state(&q).unwrap().pose(frame).into();
+            let objective =
+                TaskObjective::Frame { end_effector: frame.into(), components: Task::POSE, target };
+            let mut own = FrameCurvature::of(&objective, &robot, &limits, &options).unwrap();
+            assert!(own.is_of(&objective));
+            let mut found = Matrix::identity(n);
+            own.add(&q, (&left, root), &mut found);
+            let scale = |j: usize| 1.0 / options.joint_weights[j].sqrt();
+            let rates = |q: &[f64]| -> Vec<f64> {
+                let state = robot.state(q).unwrap();
+                let jacobian = state.jacobian(frame, ReferenceFrame::LocalWorldAligned);
+                let unit = |r: usize| root * if r < 3 { 1.0 / options.length } else { 1.0 };
+                let entry =
+                    |j: usize| (0..6).map(|r| left[r] * unit(r) * jacobian[(r, j)]).sum::<f64>();
+                (0..n).map(|j| scale(j) * entry(j)).collect()
+            };
+            let slope = |i: usize| -> Vec<f64> {
+                let (mut ahead, mut behind) = (q.clone(), q.clone());
+                ahead[i] += h;
+                behind[i] -= h;
+                let pairs = rates(&ahead).into_iter().zip(rates(&behind));
+                pairs.map(|(a, b)| scale(i) * (a - b) / (2.0 * h)).collect()
+            };
+            let slopes: Vec<Vec<f64>> = (0..n).map(slope).collect();
+            for i in 0..n {
+                for j in 0..n {
+                    let expected =
+                        f64::from(u8::from(i == j)) - 0.5 * (slopes[i][j] + slopes[j][i]);
+                    assert!((found[(i, j)] - expected).abs() < 1e-8, "{name}: {i}, {j}");
+                }
             }
         }
     }

@@ -56,8 +56,8 @@ impl DampedLevel {
     pub(in crate::control) fn damp(&mut self, damping: f64, both_signs: bool) {
         self.damp_alike(damping);
         let (m, n) = (self.level.rows.rows(), self.level.rows.cols());
-        // Shifted: then singular values are eigenvalues.
-        let shift = self.curvature.frobenius_norm();
+        // Shifted: then singular values are eigenvalues, and none vanishes, which would have no direction.
+        let shift = 2.0 * self.curvature.frobenius_norm();
         if shift == 0.0 {
             return;
         }
