@@ -104,12 +104,12 @@ fn samples_of_closed_chains() {
 }
 
 /// Number of parts of [`start`].
-const PARTS: usize = 2000;
+const PARTS: usize = 120;
 
 fn start(folder: &Path, resume: bool) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_cylindroid"));
     command
-        .args(["sweep", "youbot", "--samples", "1000000", "--part-rows", "500", "--threads", "2"])
+        .args(["sweep", "youbot", "--samples", "60000", "--part-rows", "500", "--threads", "2"])
         .args(["--quantities", "pose,yoshikawa,gibson_hunt", "--out"])
         .arg(folder)
         .stdout(Stdio::null())
@@ -134,28 +134,32 @@ fn listed(folder: &Path) -> usize {
     }
 }
 
-/// Killed ten times while parts are being written, at moments that a generator chooses: each run
+/// Killed ten times, as long as parts are missing, while parts are being written, at moments that a generator chooses: each run
 /// goes on with the parts of those before, and at the end they are those of an uninterrupted run.
 #[test]
 fn killed_processes_are_resumed() {
     let folder = tempfile::tempdir().unwrap();
     let (whole, own) = (folder.path().join("whole"), folder.path().join("own"));
     assert!(start(&whole, false).status().unwrap().success());
-    let (mut random, mut before) = (12_345_u64, 0);
-    for run in 0..10 {
+    let (mut random, mut before, mut kills) = (12_345_u64, 0, 0);
+    'runs: for run in 0..10 {
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let mut child = start(&own, own.join("manifest.json").exists()).spawn().unwrap();
         while listed(&own) == before {
-            assert!(child.try_wait().unwrap().is_none(), "run {run} ended by itself");
+            if child.try_wait().unwrap().is_some() {
+                break 'runs; // a machine that is faster than ten kills
+            }
             sleep(Duration::from_millis(1));
         }
         sleep(Duration::from_millis((random >> 33) % 30));
         child.kill().unwrap();
         child.wait().unwrap();
         let parts = listed(&own);
-        assert!(parts > before && parts < PARTS, "run {run}: {parts} parts after {before}");
+        assert!(parts > before, "run {run}: {parts} parts after {before}");
+        kills += usize::from(parts < PARTS);
         before = parts;
     }
+    assert!(kills >= 3, "{kills} kills while parts were missing");
     assert!(start(&own, true).status().unwrap().success());
     let (a, b) = (manifest(&own), manifest(&whole));
     assert_eq!(a["complete"], true);
