@@ -146,7 +146,8 @@ class _Work:
             if difference is not None:
                 raise InvalidOptionError(
                     "engine: a worker has another sweep than the driver: "
-                    f"{difference}; install the same version, and the same model files"
+                    f"{difference}; install the same version and model files, and use processors of "
+                    "one arithmetic, or set CYLINDROID_SIMD alike"
                 )
             _PLANS.clear()
             _PLANS[self.key] = plan

@@ -36,7 +36,7 @@ pub(crate) use trig::sin_cos;
 pub(crate) fn arithmetic() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     if Avx2::detect().is_some() {
-        return "x86_64 with fused products";
+        return "x86_64 with fused multiply-add";
     }
     std::env::consts::ARCH
 }

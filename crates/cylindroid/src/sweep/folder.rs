@@ -21,10 +21,10 @@ use super::shared_folder::SharedFolder;
 use super::table::Values;
 use crate::error::Result;
 
-/// Between two manifests at least.
+/// Shortest pause between two manifests.
 const BETWEEN_MANIFESTS: Duration = Duration::from_millis(100);
 
-/// Between two manifests at least, in times that the last one took to write.
+/// Shortest pause between two manifests, in multiples of the time that the last one took.
 const MANIFEST_COST: u32 = 20;
 
 /// How a sweep is written.

@@ -27,29 +27,33 @@ use super::table::{Column, ColumnKind, Values};
 use crate::error::{Error, Result};
 
 /// The recipe and the columns of a table.
-pub(super) type What<'a> = (&'a Recipe, &'a [Column]);
+pub(super) type Contents<'a> = (&'a Recipe, &'a [Column]);
 
 /// Writes the columns, and makes the file durable.
-pub(super) fn write(path: &Path, what: What<'_>, values: &[Values]) -> Result<Part> {
+pub(super) fn write(path: &Path, contents: Contents<'_>, values: &[Values]) -> Result<Part> {
     let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
-    let (part, file) = into_sink(path, file, what, values)?;
+    let (part, file) = into_sink(path, file, contents, values)?;
     file.sync_all().map_err(|error| cannot_write(path, &error))?;
     Ok(part)
 }
 
 /// The bytes of the same file.
-pub(super) fn bytes(name: &str, what: What<'_>, values: &[Values]) -> Result<(Part, Vec<u8>)> {
-    into_sink(Path::new(name), Vec::new(), what, values)
+pub(super) fn bytes(
+    name: &str,
+    contents: Contents<'_>,
+    values: &[Values],
+) -> Result<(Part, Vec<u8>)> {
+    into_sink(Path::new(name), Vec::new(), contents, values)
 }
 
 fn into_sink<W: Write + Send>(
     path: &Path,
     inner: W,
-    what: What<'_>,
+    contents: Contents<'_>,
     values: &[Values],
 ) -> Result<(Part, W)> {
     let mut sink = Summed { inner, checksum: Checksum::new(), bytes: 0, failed: None };
-    let written = into(&mut sink, what, values);
+    let written = into(&mut sink, contents, values);
     if let Some(error) = sink.failed {
         return Err(cannot_write(path, &error));
     }
@@ -126,7 +130,7 @@ fn schema(columns: &[Column]) -> std::result::Result<TypePtr, ParquetError> {
 
 fn into<W: Write + Send>(
     sink: &mut Summed<W>,
-    (recipe, columns): What<'_>,
+    (recipe, columns): Contents<'_>,
     values: &[Values],
 ) -> std::result::Result<(), ParquetError> {
     let described = columns

@@ -62,8 +62,7 @@ impl CurveTracer {
         seed: &[f64],
         about: &CentredNorm,
     ) -> Result<Option<(Vec<f64>, f64)>> {
-        self.cross_curves();
-        let Some(mut here) = self.corrected(seed.to_vec())? else { return Ok(None) };
+        let Some(mut here) = self.corrected(seed.to_vec(), false)? else { return Ok(None) };
         let mut size = about.size(&about.offset(&here.q));
         let mut trust = f64::INFINITY;
         for _ in 0..MAX_STEPS {
@@ -83,7 +82,7 @@ impl CurveTracer {
             while share > 1e-7 {
                 let change: Vec<f64> = full.iter().map(|x| share * x).collect();
                 let guess = moved(self.mechanism(), &here.q, self.unknown(), &change);
-                if let Some(point) = self.corrected(guess)? {
+                if let Some(point) = self.corrected(guess, false)? {
                     let now = about.size(&about.offset(&point.q));
                     if now < size - GAIN * share * gain {
                         next = Some((point, now));

@@ -87,8 +87,6 @@ pub(crate) struct CurveTracer {
     /// Generic rank of the loops over the unknown.
     rank: usize,
     marks: Landmarks,
-    /// True while a surface of self-motions is crossed.
-    self_motion: bool,
 }
 
 /// A point on a curve with the decomposition of the system there.
@@ -130,7 +128,7 @@ impl CurveTracer {
         (unknown, rank): (Vec<usize>, usize),
     ) -> Self {
         let marks = Landmarks::of(equations.mechanism());
-        Self { equations, vanishing, domain, unknown, rank, marks, self_motion: false }
+        Self { equations, vanishing, domain, unknown, rank, marks }
     }
 
     pub(crate) fn set_side(&mut self, side: Option<(SignedSingularity, f64)>) {
@@ -156,8 +154,8 @@ impl CurveTracer {
     }
 
     /// The landmarks of a configuration; within a self-motion its coordinates that rest.
-    fn landmarks(&mut self, q: &[f64]) -> Result<Vec<Vec3>> {
-        if !self.self_motion {
+    fn landmarks(&mut self, q: &[f64], self_motion: bool) -> Result<Vec<Vec3>> {
+        if !self_motion {
             self.equations.set(q)?;
             return Ok(self.marks.at(&link_poses(self.equations.state())));
         }
@@ -178,14 +176,13 @@ impl CurveTracer {
 
     /// The point of the curve nearest to a guess, if Newton's method finds one in the domain.
     pub(crate) fn refine(&mut self, guess: &[f64]) -> Result<Option<Seed>> {
-        self.self_motion = false;
-        let Some(point) = self.corrected(guess.to_vec())? else { return Ok(None) };
+        let Some(point) = self.corrected(guess.to_vec(), false)? else { return Ok(None) };
         if !self.contains(&point.q)? {
             return Ok(None);
         }
-        self.self_motion = self.moves_on(&point)?;
-        let landmarks = self.landmarks(&point.q)?;
-        Ok(Some(Seed { q: point.q, landmarks, self_motion: self.self_motion }))
+        let self_motion = self.moves_on(&point)?;
+        let landmarks = self.landmarks(&point.q, self_motion)?;
+        Ok(Some(Seed { q: point.q, landmarks, self_motion }))
     }
 
     /// True if the singular motion at a point leads to other points, the bounded coordinates at rest.
@@ -199,7 +196,7 @@ impl CurveTracer {
         }
         let change: Vec<f64> = motion.iter().map(|x| SELF_MOTION * x).collect();
         let guess = moved(self.equations.mechanism(), &at.q, &self.unknown, &change);
-        let Some(other) = self.corrected(guess.clone())? else { return Ok(false) };
+        let Some(other) = self.corrected(guess.clone(), false)? else { return Ok(false) };
         let rests = |&(i, ..): &(usize, f64, f64)| {
             (other.q[i] - at.q[i]).abs() <= LOCUS_AT_REST * self.unit(i)
         };
@@ -223,11 +220,6 @@ impl CurveTracer {
         Ok(motion)
     }
 
-    /// Points are those of curves from here on.
-    pub(super) fn cross_curves(&mut self) {
-        self.self_motion = false;
-    }
-
     /// [`Self::motion`] of the unknown.
     fn motion_of_unknown(&mut self, q: &[f64]) -> Result<Vec<f64>> {
         let motion = self.motion(q)?;
@@ -236,11 +228,9 @@ impl CurveTracer {
 
     /// The whole curve through a point on it, within the domain.
     pub(crate) fn trace(&mut self, seed: &Seed) -> Result<Curve> {
-        self.self_motion = seed.self_motion;
-        let from = &seed.q;
-        let mut curve = self.half(from, 1.0)?;
+        let mut curve = self.half(seed, 1.0)?;
         if !curve.closed {
-            let mut back = self.half(from, -1.0)?;
+            let mut back = self.half(seed, -1.0)?;
             back.points.reverse();
             back.landmarks.reverse();
             back.points.pop();
@@ -249,13 +239,14 @@ impl CurveTracer {
             back.landmarks.append(&mut curve.landmarks);
             curve = back;
         }
-        curve.self_motion = seed.self_motion;
         Ok(curve)
     }
 
-    fn half(&mut self, from: &[f64], sign: f64) -> Result<Curve> {
-        let mut curve = Curve::default();
-        let Some(mut here) = self.corrected(from.to_vec())? else { return Ok(curve) };
+    fn half(&mut self, seed: &Seed, sign: f64) -> Result<Curve> {
+        let mut curve = Curve { self_motion: seed.self_motion, ..Curve::default() };
+        let Some(mut here) = self.corrected(seed.q.clone(), seed.self_motion)? else {
+            return Ok(curve);
+        };
         let Some(mut tangent) = self.first_tangent(&here, sign) else { return Ok(curve) };
         self.push(&mut curve, here.q.clone())?;
         let mut step = 0.1 * self.longest(&tangent);
@@ -322,7 +313,9 @@ impl CurveTracer {
     ) -> Result<Option<(CurvePoint, Vec<f64>)>> {
         let change: Vec<f64> = tangent.iter().map(|x| step * x).collect();
         let guess = moved(self.equations.mechanism(), &here.q, &self.unknown, &change);
-        let Some(point) = self.corrected(guess.clone())? else { return Ok(None) };
+        let Some(point) = self.corrected(guess.clone(), here.motion.is_some())? else {
+            return Ok(None);
+        };
         let apart = self.apart(&point.q, &guess);
         let next = self.tangent(&point, tangent);
         let turned: f64 = next.iter().zip(tangent).map(|(a, b)| a * b).sum();
@@ -349,7 +342,7 @@ impl CurveTracer {
     }
 
     fn push(&mut self, curve: &mut Curve, q: Vec<f64>) -> Result<()> {
-        let landmarks = self.landmarks(&q)?;
+        let landmarks = self.landmarks(&q, curve.self_motion)?;
         curve.points.push(q);
         curve.landmarks.push(landmarks);
         Ok(())
@@ -404,7 +397,7 @@ impl CurveTracer {
 
     /// The part of a vector in the kernel, without the self-motion.
     pub(super) fn projected(&self, at: &CurvePoint, x: &[f64]) -> Vec<f64> {
-        let rank = if at.motion.is_some() { self.rank } else { self.rank + 1 };
+        let rank = self.rank + usize::from(at.motion.is_none());
         let back = at.svd.solve(&at.a.mul_vec(x), rank);
         let mut kernel: Vec<f64> = x.iter().zip(back).map(|(x, y)| x - y).collect();
         if let Some(motion) = &at.motion {
@@ -419,19 +412,23 @@ impl CurveTracer {
         svd.rank(SURFACE_RANK).rank.min(self.rank + 1)
     }
 
-    /// Newton's method of least norm from a guess.
-    pub(super) fn corrected(&mut self, mut q: Vec<f64>) -> Result<Option<CurvePoint>> {
+    /// Newton's method of least norm from a guess; with `self_motion` to the surface of one.
+    pub(super) fn corrected(
+        &mut self,
+        mut q: Vec<f64>,
+        self_motion: bool,
+    ) -> Result<Option<CurvePoint>> {
+        let rank = self.rank + usize::from(!self_motion);
         for _ in 0..MAX_NEWTON {
             let (a, b) = self.system(&q)?;
             let svd = Svd::of(&a);
             let open = norm(&b[..b.len() - 1]);
             let value = b.last().map_or(0.0, |x| x.abs());
             if open <= LOCUS_MET && value <= LOCUS_MET {
-                let motion = self.self_motion.then(|| self.motion_of_unknown(&q)).transpose()?;
+                let motion = self_motion.then(|| self.motion_of_unknown(&q)).transpose()?;
                 return Ok(Some(CurvePoint { q, a, svd, motion }));
             }
-            let mut change =
-                svd.solve(&b, if self.self_motion { self.rank } else { self.rank + 1 });
+            let mut change = svd.solve(&b, rank);
             let size = largest_change(self.equations.mechanism(), &self.unknown, &change);
             let factor = if size > STEPS.1 { -STEPS.1 / size } else { -1.0 };
             change.iter_mut().for_each(|x| *x *= factor);
