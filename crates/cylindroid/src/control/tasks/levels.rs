@@ -8,9 +8,9 @@ use std::ops::Range;
 use super::frame_curvature::FrameCurvature;
 use super::objective::TaskObjective;
 use super::options::{MotionTask, StoppedBy};
-use crate::control::solver::active_set::DampedLevel;
+use crate::control::solver::active_set::{DampedLevel, Level};
 use crate::control::solver::hierarchy::ScaledLevel;
-use crate::linalg::{Basis, Matrix};
+use crate::linalg::{Basis, Matrix, norm};
 
 /// Gain that makes an error of the velocity of a task that has none [1/s].
 pub(super) const USUAL_GAIN: f64 = 5.0;
@@ -103,6 +103,36 @@ impl Member {
             stopped_by: None,
             basis: Basis::workspace(n),
             row: vec![0.0; n],
+        }
+    }
+}
+
+impl Member {
+    /// Stores the part of the scaled error of which `velocities` are what is left.
+    pub(super) fn load_left(&mut self, gain: f64, velocities: &[f64]) {
+        let gain = if gain > 0.0 { gain } else { USUAL_GAIN };
+        let scale = (1.0 / gain).min(self.way / norm(velocities).max(f64::MIN_POSITIVE));
+        self.left.iter_mut().zip(velocities).for_each(|(x, left)| *x = scale * left);
+    }
+
+    /// Adds the curvature of what is left; of other tasks than frames k |error| |A_j|, with the rows of
+    /// the level and k.
+    pub(super) fn add_curvature(
+        &mut self,
+        task: &MotionTask,
+        q: &[f64],
+        (level, k): (&Level, f64),
+        out: &mut Matrix,
+    ) {
+        if let Some(of_frame) = &mut self.curvature
+            && of_frame.is_of(&task.objective)
+        {
+            of_frame.add(q, (&self.left, task.weight.sqrt()), out);
+            return;
+        }
+        let damping = k * norm(&self.left);
+        for j in 0..out.cols() {
+            out[(j, j)] += damping * norm(&level.rows.column(j)[self.rows.clone()]);
         }
     }
 }

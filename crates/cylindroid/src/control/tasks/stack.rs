@@ -205,27 +205,12 @@ impl TaskServo {
                 let left = own.left(self.set.point());
                 curvature.as_mut_slice().fill(0.0);
                 for member in members.iter_mut().filter(|m| m.direction_changed) {
-                    let (task, rows) = (&self.tasks[member.task], member.rows.clone());
-                    // What limits leave of the error, or beyond the range of the tasks all of it.
-                    let (target, left) = (&asked[rows.clone()], &left[rows.clone()]);
-                    let left = if member.is_curved { target } else { left };
-                    let gain = if task.gain > 0.0 { task.gain } else { USUAL_GAIN };
-                    let scale = (1.0 / gain).min(member.way / norm(left).max(f64::MIN_POSITIVE));
-                    for (x, left) in member.left.iter_mut().zip(left) {
-                        *x = scale * left;
-                    }
-                    if let Some(of_frame) = &mut member.curvature
-                        && of_frame.is_of(&task.objective)
-                    {
-                        let root = task.weight.sqrt();
-                        of_frame.add(self.state.q(), (&member.left, root), curvature);
-                        continue;
-                    }
-                    let damping = linear.curvature * norm(&member.left);
-                    for j in 0..curvature.cols() {
-                        let column = &level.whole.rows.column(j)[rows.clone()];
-                        curvature[(j, j)] += damping * norm(column);
-                    }
+                    let rows = member.rows.clone();
+                    let (asked, left) = (&asked[rows.clone()], &left[rows]);
+                    let task = &self.tasks[member.task];
+                    member.load_left(task.gain, if member.is_curved { asked } else { left });
+                    let of_other = (&level.whole, linear.curvature);
+                    member.add_curvature(task, self.state.q(), of_other, curvature);
                 }
                 turned.damp(LEAST_DAMPING, is_curved);
             }
