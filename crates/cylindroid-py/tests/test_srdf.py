@@ -59,3 +59,12 @@ def test_fixed_joints_and_tools():
     assert (again.joint_names, again.tool) == (fixed.joint_names, "link4")
     with pytest.raises(cy.InvalidOptionError, match="closes a loop"):
         cy.load("five-bar").with_fixed_joints(["q5"])
+
+
+def test_what_an_srdf_ignores():
+    text = "<robot name='r'>\n<virtual_joint name='v'/>\n<group name='g' rank='2'/>\n</robot>"
+    report = cy.Srdf("r.srdf", text).report
+    assert report.format == "SRDF"
+    found = [(line, what) for line, what, _ in report.ignored]
+    assert found == [(2, "<virtual_joint>"), (3, "attribute 'rank' of <group>")]
+    assert not GROUPS.report.ignored

@@ -66,3 +66,19 @@ fn groups_and_states_without_sense_are_refused() {
         assert!(refused.contains("--group"), "{refused}");
     });
 }
+
+/// What an SRDF has and nobody reads is listed, with its line.
+#[test]
+fn info_lists_what_an_srdf_ignores() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("panda.srdf");
+    fs::write(&file, TEXT.replace("</robot>", "<virtual_joint name=\"v\"/></robot>")).unwrap();
+    let command = ["info", "panda", "--srdf", file.to_str().unwrap()];
+    let ignored = json(&command, 0)["report"]["ignored_of_srdf"].clone();
+    assert_eq!((&ignored[0]["line"], &ignored[0]["what"]), (&6.into(), &"<virtual_joint>".into()));
+    assert!(crate::text(&command).contains("ignored of the SRDF"));
+    with_file(|file| {
+        let report = json(&["info", "panda", "--srdf", file], 0)["report"].clone();
+        assert!(report.get("ignored_of_srdf").is_none());
+    });
+}

@@ -120,6 +120,56 @@ fn arm_3r_rests_and_returns() {
     rests_and_returns("3r", [29, 29], [0.1, 0.1]);
 }
 
+/// Beyond reach least squares command the same velocities wherever the robot stands.
+#[test]
+fn least_squares_do_not_depend_on_the_foundation() {
+    let arm = catalogue::load("ur5e").unwrap();
+    let mut random = Random(7);
+    for _ in 0..20 {
+        let foundation = random.pose();
+        let mut builder = Mechanism::builder("turned");
+        for joint in arm.joints() {
+            let [parent, child] = [joint.parent, joint.child].map(|l| &arm.links()[l].name);
+            let own = joint.parent_from_joint;
+            let is_first = joint.parent == 0;
+            builder.joint(JointSpec {
+                axis: joint.axis,
+                limits: joint.limits,
+                parent_from_joint: if is_first { foundation * own } else { own },
+                ..JointSpec::new(&joint.name, joint.kind, parent, child)
+            });
+        }
+        let turned = builder.build().unwrap();
+        let q = within(&arm, &mut random);
+        let link = &arm.links().last().unwrap().name;
+        let [rates, others] =
+            [(&arm, Pose::IDENTITY), (&turned, foundation)].map(|(robot, base)| {
+                let frame = robot.frame(link).unwrap();
+                let mut target = arm.state(&q).unwrap().pose(arm.frame(link).unwrap());
+                target.translation = target.translation * 2.5;
+                let objective = TaskObjective::Frame {
+                    end_effector: frame.into(),
+                    components: Task::POSE,
+                    target: (base * target).into(),
+                };
+                let options = TaskServoOptions {
+                    dt: DT,
+                    keep_directions: false,
+                    length: 0.8,
+                    ..TaskServoOptions::new(robot)
+                };
+                let tasks = vec![MotionTask::new("hand", objective)];
+                let mut servo = TaskServo::new(robot, tasks, options).unwrap();
+                servo.step(&q).unwrap();
+                servo.joint_velocities().to_vec()
+            });
+        assert!(rates.iter().any(|rate| rate.abs() > 1e-3));
+        for (a, b) in rates.iter().zip(&others) {
+            assert!((a - b).abs() < 1e-7, "{rates:?} {others:?}");
+        }
+    }
+}
+
 /// An arm without limits that is almost straight: its target is inside, where the curvature of the task is
 /// negative and the linear task asks for hundreds of rad/s.
 #[test]
