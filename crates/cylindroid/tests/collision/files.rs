@@ -121,7 +121,7 @@ fn meshes_are_hulls_or_capsules() {
 #[test]
 fn mjcf_planes_and_ellipsoids() {
     let text = r#"<mujoco><worldbody>
-        <geom type="plane" size="1 1 0.1" pos="0 0 -0.5"/>
+        <geom type="plane" size="0 0 0.1" pos="0 0 -0.5"/>
         <body name="egg" pos="0 0 1"><freejoint/>
           <geom type="ellipsoid" size="0.1 0.2 0.3"/>
         </body></worldbody></mujoco>"#;
@@ -132,6 +132,11 @@ fn mjcf_planes_and_ellipsoids() {
     model.near(&state, 10.0, &mut near).unwrap();
     assert_eq!(model.names(near[0].pair), ["world", "egg"]);
     assert!((near[0].distance - 1.2).abs() < 1e-12);
+
+    // Contacts with a plane know no edge, whatever is drawn; the file says otherwise, so it is noted.
+    let egg = mjcf::parse(&text.replace("0 0 0.1\"", "1 1 0.1\""), "egg.xml".as_ref()).unwrap();
+    let notes: Vec<_> = egg.report().ignored.iter().map(|i| i.why.as_str()).collect();
+    assert_eq!(notes, ["a plane is unbounded"]);
 }
 
 #[test]

@@ -116,7 +116,8 @@ impl<'d> Mjcf<'d> {
     /// Logs the sizes that a shape does not have, and the pose of a geom between two points.
     fn unread_places_and_sizes(&mut self, element: &Element<'d>) {
         let between = element.source_element("fromto");
-        let used_sizes = match self.kind_of(element) {
+        let kind = self.kind_of(element);
+        let used_sizes = match kind {
             "plane" | "mesh" | "hfield" | "sdf" => 0,
             "sphere" => 1,
             _ if between.is_some() => 1,
@@ -130,8 +131,14 @@ impl<'d> Mjcf<'d> {
         if let Some(node) = element.source_element("size") {
             let text = node.attribute("size").unwrap_or("");
             let is_zero = |word: &str| word.parse() == Ok(0.0);
-            if text.split_whitespace().skip(used_sizes).any(|word| !is_zero(word)) {
-                note(node, "size", "a shape of this type has fewer sizes");
+            // The third size of a plane is the width of the grid that is drawn on it.
+            let sizes = text.split_whitespace().take(if kind == "plane" { 2 } else { usize::MAX });
+            if sizes.skip(used_sizes).any(|word| !is_zero(word)) {
+                let why = match kind {
+                    "plane" => "a plane is unbounded",
+                    _ => "a shape of this type has fewer sizes",
+                };
+                note(node, "size", why);
             }
         }
         if between.is_some() {
