@@ -34,7 +34,7 @@ pub unsafe extern "C" fn cyl_batch_new(
         let measures = ManipulabilityBatch::new(robot, &options)?;
         give(
             out,
-            cyl_batch { kinematics: KinematicsBatch::new(robot, of), measures, n: robot.n() },
+            cyl_batch { kinematics: KinematicsBatch::new(robot, of)?, measures, n: robot.n() },
         );
         Ok(())
     })

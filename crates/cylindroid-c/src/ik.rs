@@ -47,7 +47,7 @@ pub unsafe extern "C" fn cyl_ik_new(
             unsafe { (handle("mechanism", mechanism)?, handle_mut("out", out)?) };
         let robot = &mechanism.inner;
         let of = end_effector(robot, frame)?;
-        let target = robot.state(robot.home())?.pose(of);
+        let target = robot.state(robot.home())?.pose(of)?;
         let goals = [Goal::frame(of, Task::POSE, target)];
         let options = IkOptions { nearest: true, ..IkOptions::default() };
         let solver = Solver::new(robot, &goals, &options)?;

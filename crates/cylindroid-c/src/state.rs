@@ -64,7 +64,7 @@ pub unsafe extern "C" fn cyl_state_pose(
         // SAFETY: as the header requires.
         let (state, pose) = unsafe { (handle("state", state)?, slice_mut("pose", pose, 16)?) };
         let of = end_effector(state.inner.mechanism(), frame)?;
-        write_pose(state.inner.pose(of), pose);
+        write_pose(state.inner.pose(of)?, pose);
         Ok(())
     })
 }
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn cyl_state_jacobian(
         let (of, n): (EndEffector, usize) = (end_effector(robot, frame)?, robot.n());
         // SAFETY: 6 n numbers, as the header says.
         let out = unsafe { slice_mut("jacobian", jacobian, 6 * n) }?;
-        state.inner.jacobian_into(of, reference(reference_number)?, &mut state.jacobian);
+        state.inner.jacobian_into(of, reference(reference_number)?, &mut state.jacobian)?;
         out.copy_from_slice(state.jacobian.as_slice());
         Ok(())
     })

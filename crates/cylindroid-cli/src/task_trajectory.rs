@@ -97,7 +97,7 @@ impl TaskTrajectory {
             return;
         }
         let tasks = servo.reports().iter().zip(&self.end_effectors).map(|(report, of)| {
-            let pose = of.map(|of| self.state.pose(of));
+            let pose = of.and_then(|of| self.state.pose(of).ok());
             TaskSample {
                 position: pose.map(|pose| pose.translation.to_array()),
                 quaternion: pose.map(|pose| {

@@ -63,10 +63,11 @@ impl Root<'_> {
         if name.is_empty() || self.0.links().first().is_some_and(|link| link.name == name) {
             return Ok(Pose::IDENTITY);
         }
-        let id = self.0.frame(name).map_err(|e| format!("a target is refused: {e}"))?;
+        let refused = |error: cylindroid::Error| format!("a target is refused: {error}");
+        let id = self.0.frame(name).map_err(refused)?;
         let state = at.ok_or_else(|| {
             format!("a target in '{name}' is refused: the joint states are not complete")
         })?;
-        Ok(state.pose(id))
+        state.pose(id).map_err(refused)
     }
 }

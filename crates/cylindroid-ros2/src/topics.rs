@@ -185,9 +185,12 @@ impl Topics {
         self.record.sent(&self.diagnostics, DiagnosticArray { header, status: vec![status] });
     }
 
-    pub(crate) fn tf(&mut self, frames: impl FnOnce(&Time) -> TFMessage) {
-        if let Some(tf) = &self.tf {
-            self.record.sent(tf, frames(&Time::now()));
+    /// Sends the transforms of a time, unless they cannot be computed.
+    pub(crate) fn tf(&mut self, frames: impl FnOnce(&Time) -> cylindroid::Result<TFMessage>) {
+        if let Some(tf) = &self.tf
+            && let Ok(transforms) = frames(&Time::now())
+        {
+            self.record.sent(tf, transforms);
         }
     }
 

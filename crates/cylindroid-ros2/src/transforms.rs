@@ -1,6 +1,6 @@
 //! The frames of the robot as transforms: links in their parents, named frames on their links.
 
-use cylindroid::{FrameId, Mechanism, State};
+use cylindroid::{FrameId, Mechanism, Result, State};
 
 use crate::messages::{Header, Quaternion, TFMessage, Time, Transform, TransformStamped, Vector3};
 
@@ -19,19 +19,19 @@ impl Frames {
     }
 
     /// The transforms at this state.
-    pub(crate) fn at(&self, state: &State, stamp: &Time) -> TFMessage {
-        let transforms = self.0.iter().map(|[(parent, parent_name), (child, child_name)]| {
-            let pose = state.pose(*parent).inverse() * state.pose(*child);
+    pub(crate) fn at(&self, state: &State, stamp: &Time) -> Result<TFMessage> {
+        let transform = |[(parent, parent_name), (child, child_name)]: &[(FrameId, String); 2]| {
+            let pose = state.pose(*parent)?.inverse() * state.pose(*child)?;
             let (p, q) = (pose.translation, pose.rotation.to_quaternion());
-            TransformStamped {
+            Ok(TransformStamped {
                 header: Header { stamp: stamp.clone(), frame_id: parent_name.clone() },
                 child_frame_id: child_name.clone(),
                 transform: Transform {
                     translation: Vector3 { x: p.x, y: p.y, z: p.z },
                     rotation: Quaternion { x: q.x, y: q.y, z: q.z, w: q.w },
                 },
-            }
-        });
-        TFMessage { transforms: transforms.collect() }
+            })
+        };
+        Ok(TFMessage { transforms: self.0.iter().map(transform).collect::<Result<_>>()? })
     }
 }

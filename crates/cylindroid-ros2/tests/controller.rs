@@ -67,7 +67,7 @@ impl Loop {
     }
 
     fn tool(&self) -> cylindroid::Pose {
-        self.robot.state(&self.q).unwrap().pose(self.robot.tool())
+        self.robot.state(&self.q).unwrap().pose(self.robot.tool()).unwrap()
     }
 
     fn pose(&mut self, frame_id: &str, pose: cylindroid::Pose) {
@@ -332,7 +332,8 @@ fn closed_chains_are_commanded_their_drives() {
     let actuated: Vec<usize> = linkage.robot.actuated().collect();
     assert!(linkage.names.len() == actuated.len() && actuated.len() < linkage.robot.n());
     linkage.q.copy_from_slice(linkage.robot.home());
-    let reference = |l: &Loop| l.robot.state(&l.q).unwrap().pose(l.robot.reference()).translation;
+    let reference =
+        |l: &Loop| l.robot.state(&l.q).unwrap().pose(l.robot.reference()).unwrap().translation;
     let begun = reference(&linkage);
     for _ in 0..100 {
         linkage.twist("", [0.0, 0.1, 0.0]);

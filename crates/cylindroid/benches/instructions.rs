@@ -50,7 +50,7 @@ fn configuration(robot: &Mechanism, i: usize) -> Vec<f64> {
 
 fn forward(calls: usize) {
     let robot = panda();
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool()).unwrap();
     let q = [configuration(&robot, 0), configuration(&robot, 1)];
     for i in 0..calls {
         black_box(chain.set(black_box(&q[i % 2])));
@@ -59,7 +59,7 @@ fn forward(calls: usize) {
 
 fn jacobian(calls: usize) {
     let robot = panda();
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool()).unwrap();
     let mut j = Matrix::zeros(6, chain.n());
     let q = [configuration(&robot, 0), configuration(&robot, 1)];
     for i in 0..calls {
@@ -72,7 +72,7 @@ fn jacobian(calls: usize) {
 /// Poses and Jacobians of 1000 configurations.
 fn batch(calls: usize) {
     let robot = panda();
-    let batch = KinematicsBatch::new(&robot, robot.tool());
+    let batch = KinematicsBatch::new(&robot, robot.tool()).unwrap();
     let (mut poses, mut jacobians) = (vec![0.0; 1000 * 16], vec![0.0; 1000 * 6 * robot.n()]);
     let q: Vec<f64> = (0..1000).flat_map(|i| configuration(&robot, i)).collect();
     for _ in 0..calls {
@@ -87,7 +87,7 @@ fn servo_step(calls: usize) {
     let robot = panda();
     let mut servo = Servo::new(&robot, ServoOptions::new(&robot)).unwrap();
     let mut q = robot.home().to_vec();
-    let start = robot.state(&q).unwrap().pose(robot.tool());
+    let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let translation = start.translation + Vec3::new(0.0, 0.1, 0.1);
     for _ in 0..calls {
         black_box(servo.step(&q, Pose { translation, ..start }).unwrap());
@@ -99,7 +99,7 @@ fn near_jacobians() -> [Matrix; 2] {
     let robot = panda();
     [0, 1].map(|i| {
         let state = robot.state(&configuration(&robot, i)).unwrap();
-        state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+        state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap()
     })
 }
 
@@ -124,7 +124,8 @@ fn svd_warm(calls: usize) {
 /// From home to one pose far from it, to 1e-5.
 fn inverse_kinematics(calls: usize) {
     let robot = panda();
-    let target = robot.state(&[1.1, -0.4, 0.6, -1.7, 0.9, 2.2, -0.5]).unwrap().pose(robot.tool());
+    let target =
+        robot.state(&[1.1, -0.4, 0.6, -1.7, 0.9, 2.2, -0.5]).unwrap().pose(robot.tool()).unwrap();
     let goal = [Goal::pose(robot.tool(), target)];
     let options =
         IkOptions { position_tolerance: 1e-5, orientation_tolerance: 1e-5, ..IkOptions::default() };

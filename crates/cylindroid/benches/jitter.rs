@@ -73,7 +73,7 @@ fn circle(name: &str, besides: bool, radius: f64, steps: usize) -> Vec<u128> {
         options.secondary = options.default_secondary(&robot).unwrap();
     }
     let mut servo = Servo::new(&robot, options).unwrap();
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let mut q = robot.home().to_vec();
     (0..steps)
         .map(|step| {
@@ -96,7 +96,7 @@ fn object(name: &str, steps: usize) -> Vec<u128> {
     let mut servo = Servo::new(&mechanism, ServoOptions::new(&mechanism)).unwrap();
     let mut q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
     let end_effector = servo.options().end_effector;
-    let start = mechanism.state(&q).unwrap().pose(end_effector);
+    let start = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
     (0..steps)
         .map(|step| {
             let way = Vec3::X * (0.02 * (step as f64 / 500.0 * TAU).sin());
@@ -136,7 +136,7 @@ fn chain_of_loops(loops: usize) -> Mechanism {
 
 fn frame(robot: &Mechanism, name: &str, components: Task, q: &[f64]) -> MotionTask {
     let frame = robot.frame(name).unwrap();
-    let target = robot.state(q).unwrap().pose(frame).into();
+    let target = robot.state(q).unwrap().pose(frame).unwrap().into();
     let objective = TaskObjective::Frame { end_effector: frame.into(), components, target };
     MotionTask::new(name, objective)
 }

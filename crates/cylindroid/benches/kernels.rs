@@ -37,7 +37,7 @@ fn poses(robot: &Mechanism) -> [Vec<f64>; 2] {
 #[divan::bench(args = ROBOTS)]
 fn forward_kinematics(bencher: Bencher<'_, '_>, name: &str) {
     let robot = robot(name);
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool()).unwrap();
     let q = poses(&robot);
     let mut i = 0;
     bencher.bench_local(|| {
@@ -49,7 +49,7 @@ fn forward_kinematics(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = ROBOTS)]
 fn forward_kinematics_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
     let robot = robot(name);
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool()).unwrap();
     let mut j = Matrix::zeros(6, chain.n());
     let q = poses(&robot);
     let mut i = 0;
@@ -67,7 +67,7 @@ fn forward_kinematics_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
 fn batch_of_jacobians(bencher: Bencher<'_, '_>, name: &str) {
     const COUNT: usize = 100_000;
     let robot = robot(name);
-    let batch = KinematicsBatch::new(&robot, robot.tool());
+    let batch = KinematicsBatch::new(&robot, robot.tool()).unwrap();
     let n = robot.n();
     let q: Vec<f64> = (0..COUNT * n).map(|i| (i * 7919 % 6283) as f64 * 1e-3 - 3.1).collect();
     let mut poses = vec![0.0; COUNT * 16];
@@ -92,7 +92,7 @@ fn state_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
     bencher.bench_local(|| {
         i ^= 1;
         state.set(black_box(&q[i])).unwrap();
-        state.jacobian_into(robot.tool(), ReferenceFrame::LocalWorldAligned, &mut j);
+        state.jacobian_into(robot.tool(), ReferenceFrame::LocalWorldAligned, &mut j).unwrap();
         black_box(&j);
     });
 }
@@ -100,7 +100,7 @@ fn state_and_jacobian(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench]
 fn hessian_panda(bencher: Bencher<'_, '_>) {
     let robot = robot("panda");
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool()).unwrap();
     chain.set(robot.home());
     let mut h = vec![Matrix::zeros(6, 7); 7];
     bencher.bench_local(|| {
@@ -111,7 +111,11 @@ fn hessian_panda(bencher: Bencher<'_, '_>) {
 
 fn panda_jacobian() -> Matrix {
     let robot = robot("panda");
-    robot.state(robot.home()).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+    robot
+        .state(robot.home())
+        .unwrap()
+        .jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+        .unwrap()
 }
 
 #[divan::bench]
@@ -154,6 +158,7 @@ fn batch_of_inverses_6x7(bencher: Bencher<'_, '_>, name: &str) {
     let n = robot.n();
     let q: Vec<f64> = (0..COUNT * n).map(|i| (i * 7919 % 6283) as f64 * 1e-3 - 3.1).collect();
     let jacobians = KinematicsBatch::new(&robot, robot.tool())
+        .unwrap()
         .jacobians(&q, ReferenceFrame::LocalWorldAligned)
         .unwrap();
     let batch = inverse::InverseBatch::new(Method::named(name).unwrap(), 6, n).unwrap();
@@ -179,7 +184,7 @@ fn servo_step(bencher: Bencher<'_, '_>, robot_name: &str, method: &str) {
     let options =
         ServoOptions { method: Method::named(method).unwrap(), ..ServoOptions::new(&robot) };
     let mut servo = Servo::new(&robot, options).unwrap();
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = |dz: f64| Pose {
         translation: start.translation + cylindroid::Vec3::new(0.0, 0.1, dz),
         ..start
@@ -199,7 +204,7 @@ fn servo_step(bencher: Bencher<'_, '_>, robot_name: &str, method: &str) {
 fn jacobians() -> [(Matrix, &'static str); 2] {
     let of = |name: &str, q: &[f64]| {
         let robot = robot(name);
-        robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::World)
+        robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::World).unwrap()
     };
     [(of("3r", &[0.3, 0.5, -1.1]), "3r"), (of("youbot", &[0.4, 0.6, 0.9, 0.5, 0.2]), "youbot")]
 }
@@ -356,7 +361,7 @@ fn object_servo_step(bencher: Bencher<'_, '_>, name: &str) {
     let mechanism = robot(name);
     let mut servo = Servo::new(&mechanism, ServoOptions::new(&mechanism)).unwrap();
     let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
-    let here = mechanism.state(&q).unwrap().pose(mechanism.reference());
+    let here = mechanism.state(&q).unwrap().pose(mechanism.reference()).unwrap();
     let mut i = 0.0;
     bencher.bench_local(|| {
         i = 1.0 - i;
@@ -384,8 +389,9 @@ fn drawn(robot: &Mechanism) -> impl FnMut() -> Vec<f64> + '_ {
 fn inverse_kinematics_by_formulas(bencher: Bencher<'_, '_>, name: &str) {
     let robot = robot(name);
     let mut draw = drawn(&robot);
-    let tasks: Vec<(Vec<f64>, Pose)> =
-        (0..2000).map(|_| (draw(), robot.state(&draw()).unwrap().pose(robot.tool()))).collect();
+    let tasks: Vec<(Vec<f64>, Pose)> = (0..2000)
+        .map(|_| (draw(), robot.state(&draw()).unwrap().pose(robot.tool()).unwrap()))
+        .collect();
     let mut ik = Analytic::of(&robot, robot.tool()).unwrap();
     let mut i = 0;
     bencher.bench_local(|| {
@@ -401,7 +407,7 @@ fn inverse_kinematics(bencher: Bencher<'_, '_>, name: &str) {
     let mut draw = drawn(&robot);
     let tasks: Vec<(Vec<f64>, Goal)> = (0..2000)
         .map(|_| {
-            let target = robot.state(&draw()).unwrap().pose(robot.tool());
+            let target = robot.state(&draw()).unwrap().pose(robot.tool()).unwrap();
             (draw(), Goal::pose(robot.tool(), target))
         })
         .collect();

@@ -48,7 +48,7 @@ fn against_starts(name: &str, robot: &Mechanism) {
     let (mut closer, mut farther, mut most, mut least_starts) = (0, 0, 0.0_f64, usize::MAX);
     for _ in 0..COMPARED {
         let start = draw();
-        let target = robot.state(&draw()).unwrap().pose(tool);
+        let target = robot.state(&draw()).unwrap().pose(tool).unwrap();
         let goals = [Goal::pose(tool, target)];
         let far = |q: &[f64]| {
             let squares = q.iter().zip(&start).map(|(a, b)| (a - b) * (a - b));
@@ -83,13 +83,13 @@ fn rows(name: &str, robot: &Mechanism, tool: EndEffector) {
     for targets in ["reachable", "shifted by 0.2 m", "turned by pi"] {
         let mut draw = drawn(robot);
         let options = IkOptions { nearest: true, ..IkOptions::default() };
-        let first = Goal::pose(tool, robot.state(robot.home()).unwrap().pose(tool));
+        let first = Goal::pose(tool, robot.state(robot.home()).unwrap().pose(tool).unwrap());
         let mut solver = Solver::new(robot, &[first], &options).unwrap();
         let (mut times, mut solved) = (Vec::new(), 0);
         let mut misses = Vec::new();
         for _ in 0..TARGETS {
             let start = draw();
-            let mut target = robot.state(&draw()).unwrap().pose(tool);
+            let mut target = robot.state(&draw()).unwrap().pose(tool).unwrap();
             match targets {
                 "shifted by 0.2 m" => target.translation += Vec3::X * 0.2,
                 "turned by pi" => {

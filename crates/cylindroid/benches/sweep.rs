@@ -54,7 +54,7 @@ fn main() {
     // Once without looking at the clock.
     parts(&of(&all), &|sweep, part| drop(sweep.part(part).unwrap()));
 
-    let kernel = KinematicsBatch::new(&robot, robot.tool());
+    let kernel = KinematicsBatch::new(&robot, robot.tool()).unwrap();
     let samples = of(&[]).table(0..1024).unwrap();
     let q: Vec<f64> = (0..1024)
         .flat_map(|i| {

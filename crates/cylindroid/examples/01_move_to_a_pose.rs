@@ -11,7 +11,7 @@ fn main() -> cylindroid::Result<()> {
     let robot = cylindroid::load(&model)?;
 
     // Ten centimetres down from where the tool is at home.
-    let start = robot.state(robot.home())?.pose(robot.tool());
+    let start = robot.state(robot.home())?.pose(robot.tool())?;
     let target = Pose { translation: start.translation + Vec3::new(0.0, 0.0, -0.1), ..start };
 
     let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;

@@ -16,7 +16,7 @@ fn main() -> cylindroid::Result<()> {
     let mut servo = Servo::new(&robot, options)?;
 
     let mut q = robot.home().to_vec(); // from the robot's encoders
-    let start = robot.state(&q)?.pose(robot.tool());
+    let start = robot.state(&q)?.pose(robot.tool())?;
     let velocity = Vec3::new(0.0, 0.1, 0.0); // a conveyor, m/s
     for cycle in 0..2000 {
         let t = f64::from(cycle) * 1e-3;

@@ -17,7 +17,7 @@ const FORCE: f64 = 5.0; // N
 fn main() -> cylindroid::Result<()> {
     let robot = cylindroid::load("panda")?;
     let mut servo = Servo::new(&robot, ServoOptions { dt: DT, ..ServoOptions::new(&robot) })?;
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool())?;
     let mut q = robot.home().to_vec();
 
     // A plane through the tip of the pen, tilted by 30 degrees; the pen keeps its orientation.

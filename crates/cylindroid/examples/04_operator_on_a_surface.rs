@@ -31,7 +31,7 @@ fn off_surface(center: Vec3, pose: Pose) -> (f64, f64) {
 fn main() -> cylindroid::Result<()> {
     let robot = cylindroid::load("panda")?;
     let mut servo = Servo::new(&robot, ServoOptions { dt: DT, ..ServoOptions::new(&robot) })?;
-    let mut chain = Chain::new(&robot, robot.tool());
+    let mut chain = Chain::new(&robot, robot.tool())?;
     let mut q = robot.home().to_vec();
 
     // The sphere is 5 mm below the tool, which is tilted against its normal by 0.05 rad.

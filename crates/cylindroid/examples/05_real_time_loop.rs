@@ -46,7 +46,7 @@ fn control(seconds: u32) -> cylindroid::Result<Times> {
     let options = ServoOptions { dt: PERIOD.as_secs_f64(), ..ServoOptions::new(&robot) };
     let mut servo = Servo::new(&robot, options)?;
     let mut q = robot.home().to_vec();
-    let start = robot.state(&q)?.pose(robot.tool());
+    let start = robot.state(&q)?.pose(robot.tool())?;
 
     // All memory before the first cycle.
     let cycles = seconds as usize * 1000;

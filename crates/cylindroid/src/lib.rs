@@ -6,8 +6,8 @@
 //!
 //! let robot = catalogue::load("panda")?; // `cylindroid::load` reads URDF, MJCF, SDF, TOML
 //! let state = robot.state(robot.home())?;
-//! let world_from_tool = state.pose(robot.tool());
-//! let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+//! let world_from_tool = state.pose(robot.tool())?;
+//! let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)?;
 //! assert_eq!((jacobian.rows(), jacobian.cols()), (6, 7));
 //! # assert!(world_from_tool.translation.x > 0.3);
 //! # Ok::<(), cylindroid::Error>(())

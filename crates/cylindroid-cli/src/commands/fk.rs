@@ -46,19 +46,21 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
     if args.all {
         let ids = robot.frame_ids().map(|id| (robot.frame_of(id).name.as_str(), id));
         if style == Style::Json {
-            let frames =
-                ids.map(|(frame, id)| FrameJson { frame, pose: state.pose(id).into() }).collect();
+            let frames = ids
+                .map(|(frame, id)| Ok(FrameJson { frame, pose: state.pose(id)?.into() }))
+                .collect::<cylindroid::Result<_>>()?;
             output::json(out, &AllJson { model, q, joint_names, outside_limits, frames })?;
             return Ok(Exit::SUCCESS);
         }
         print_posture(out, model, q, &outside_limits)?;
         let mut columns = vec![("frame", Align::Left)];
         columns.extend(output::POSE_COLUMNS);
-        let rows = ids.map(|(name, id)| {
+        let row = |(name, id): (&str, _)| {
             let mut row = vec![name.to_owned()];
-            row.extend(output::pose_cells(state.pose(id)));
-            row
-        });
+            row.extend(output::pose_cells(state.pose(id)?));
+            Ok(row)
+        };
+        let rows: Vec<_> = ids.map(row).collect::<cylindroid::Result<_>>()?;
         writeln!(out)?;
         output::table(out, &columns, rows)?;
         return Ok(Exit::SUCCESS);
@@ -66,7 +68,7 @@ pub(crate) fn run(args: &FkArgs, style: Style, out: &mut dyn Write) -> anyhow::R
 
     let end_effector = end_effector(&robot, &args.frame)?;
     let frame = robot.frame_of(end_effector.frame).name.as_str();
-    let pose = state.pose(end_effector);
+    let pose = state.pose(end_effector)?;
     if style == Style::Json {
         let pose = pose.into();
         output::json(out, &FkJson { model, frame, q, joint_names, outside_limits, pose })?;

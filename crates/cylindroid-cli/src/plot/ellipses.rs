@@ -37,7 +37,7 @@ pub(crate) fn draw(drawing: &Drawing<'_>, path: &Path) -> Result<()> {
     ];
     let mechanism = drawing.state.mechanism();
     let frame = mechanism.frame_of(drawing.chain.reference);
-    let reference = drawing.state.pose(drawing.chain.reference).translation;
+    let reference = drawing.state.pose(drawing.chain.reference)?.translation;
     let skeleton = Skeleton::new(drawing.state, (frame.link, reference));
     let title = format!(
         "{}: velocity and force at '{}', actuated: {}",

@@ -180,7 +180,7 @@ impl Avoidance {
         }
         // From where the tool is.
         if let Some(tool) = tool {
-            let pose = self.servo.mechanism().state(q)?.pose(tool);
+            let pose = self.servo.mechanism().state(q)?.pose(tool)?;
             if let TaskObjective::Frame { target, .. } = self.servo.objective_mut(TOOL)? {
                 target.pose = pose;
             }

@@ -50,7 +50,7 @@ pub(super) fn compare(
 ) -> Result<String, Complaint> {
     let at = |place: &'static str| move |error: Error| Complaint::of(place, &error);
     let (options, state) = (session.options(), session.state());
-    let tool = state.pose(options.end_effector);
+    let tool = state.pose(options.end_effector).map_err(at("compare"))?;
     let asked = match requested.twist {
         Some(twist) => Twist::from_array(twist),
         None => {

@@ -80,7 +80,7 @@ pub(super) fn posture<'a>(
         .frame_ids()
         .take(mechanism.links().len())
         .map(|frame| state.pose(frame))
-        .collect();
+        .collect::<Result<_>>()?;
     let loops = mechanism.loops().iter().map(|l| LoopJson {
         a: (poses[l.a] * l.link_a_from_joint).translation.to_array(),
         b: (poses[l.b] * l.link_b_from_joint).translation.to_array(),
@@ -98,7 +98,7 @@ pub(super) fn posture<'a>(
     Ok(PostureJson {
         q: state.q(),
         links: poses.iter().map(|p| (*p).into()).collect(),
-        tool: state.pose(options.end_effector).into(),
+        tool: state.pose(options.end_effector)?.into(),
         singular: measures.map(|m| SingularJson {
             values: m.condition.inverse.singular_values.clone(),
             threshold: m.condition.inverse.threshold,

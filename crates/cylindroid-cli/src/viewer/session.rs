@@ -84,7 +84,7 @@ impl Session {
         let state = mechanism.state(&start.q)?;
         let method = Chosen::plain(options.method);
         let mut session = Self {
-            target: state.pose(options.end_effector),
+            target: state.pose(options.end_effector)?,
             servo: Servo::new(&mechanism, options.clone()),
             trouble: None,
             task: "pose".to_owned(),
@@ -219,11 +219,11 @@ impl Session {
             };
         }
         // Non-finite configurations are rejected.
-        if let Err(error) = moved.and_then(|()| self.state.set(&q)) {
-            (self.trouble, self.is_resting) = (Some(error), true);
-        }
-        if is_driven {
-            self.target = self.state.pose(self.options.end_effector);
+        let moved = moved.and_then(|()| self.state.set(&q));
+        match moved.and_then(|()| self.state.pose(self.options.end_effector)) {
+            Ok(tool) if is_driven => self.target = tool,
+            Ok(_) => {}
+            Err(error) => (self.trouble, self.is_resting) = (Some(error), true),
         }
         self.state.q() != before || self.is_resting || first
     }
@@ -279,7 +279,7 @@ impl Session {
     pub(super) fn choose_frame(&mut self, frame: FrameId) -> Result<()> {
         let options = ServoOptions { end_effector: frame.into(), ..self.options.clone() };
         self.take(options)?;
-        (self.target, self.is_target_placed) = (self.state.pose(frame), false);
+        (self.target, self.is_target_placed) = (self.state.pose(frame)?, false);
         Ok(())
     }
 
@@ -315,7 +315,7 @@ impl Session {
     /// Sets the configuration, and the target to the tool.
     pub(super) fn stand(&mut self, q: &[f64]) -> Result<()> {
         self.state.set(q)?;
-        self.target = self.state.pose(self.options.end_effector);
+        self.target = self.state.pose(self.options.end_effector)?;
         self.is_target_placed = false;
         self.self_motion = None;
         self.wake();

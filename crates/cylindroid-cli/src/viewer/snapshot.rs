@@ -89,7 +89,7 @@ pub(super) fn snapshot(
     seq: u64,
 ) -> Result<String> {
     let options = session.options();
-    let error = options.task.error(session.state().pose(options.end_effector), session.target());
+    let error = options.task.error(session.state().pose(options.end_effector)?, session.target());
     let (time, playing, target) = (session.time(), session.is_playing(), session.target().into());
     Ok(text(&StateJson {
         seq,

@@ -85,7 +85,7 @@ impl PyMechanism {
         let twist = twist.map(|t| t.twist("twist")).transpose()?;
         let state = self.inner.state(q.vector(&self.inner, "q")?)?;
         let inverse = choice.inverse(&state, of, reference, twist)?;
-        let jacobian = state.jacobian(of, reference);
+        let jacobian = state.jacobian(of, reference)?;
         Ok(PyInverse::new(&Many::One(jacobian), Many::One(inverse), (6, self.inner.n())))
     }
 }

@@ -92,7 +92,7 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         if is_batch(&rows) {
-            let batch = KinematicsBatch::new(&self.inner, of);
+            let batch = KinematicsBatch::new(&self.inner, of)?;
             return threads::written_to(py, out, rows.count, &[4, 4], |out| {
                 batch.poses_into(rows.values, out)
             });
@@ -101,7 +101,7 @@ impl PyMechanism {
         let mut state = self.inner.state(self.inner.home())?;
         arrays::written_rows_to(py, out, rows.count, &[4, 4], |i, out| {
             state.set(rows.row(i))?;
-            arrays::put_pose(state.pose(of), out);
+            arrays::put_pose(state.pose(of)?, out);
             Ok(())
         })
     }
@@ -130,7 +130,7 @@ impl PyMechanism {
         arrays::written_rows(py, rows.count, &[frames, 4, 4], |i, out| {
             state.set(rows.row(i))?;
             for (frame, out) in self.inner.frame_ids().zip(out.chunks_exact_mut(16)) {
-                arrays::put_pose(state.pose(frame), out);
+                arrays::put_pose(state.pose(frame)?, out);
             }
             Ok(())
         })
@@ -286,7 +286,7 @@ impl PyMechanism {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let of = self.end_effector(frame, tool.as_ref())?;
         if is_batch(&rows) {
-            let batch = KinematicsBatch::new(&self.inner, of);
+            let batch = KinematicsBatch::new(&self.inner, of)?;
             return threads::written_to(py, out, rows.count, &[6, n], |out| {
                 batch.jacobians_into(rows.values, reference, out)
             });
@@ -295,7 +295,7 @@ impl PyMechanism {
         let mut whole = Matrix::zeros(6, n);
         arrays::written_rows_to(py, out, rows.count, &[6, n], |i, out| {
             state.set(rows.row(i))?;
-            state.jacobian_into(of, reference, &mut whole);
+            state.jacobian_into(of, reference, &mut whole)?;
             arrays::put_rows(&whole, out);
             Ok(())
         })
@@ -341,7 +341,7 @@ impl PyMechanism {
     ) -> Result<Array<'py>> {
         let (n, reference) = (self.inner.n(), reference_of(reference)?);
         let rows = Rows::of(&self.inner, "q", &q)?;
-        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?);
+        let mut chain = Chain::new(&self.inner, self.end_effector(frame, tool.as_ref())?)?;
         let mut local = vec![Matrix::zeros(6, chain.n()); chain.n()];
         arrays::written_rows(py, rows.count, &[n, 6, n], |i, out| {
             chain.set(rows.row(i));
@@ -447,7 +447,7 @@ impl PyMechanism {
         let mut state = self.inner.state(self.inner.home())?;
         arrays::written_rows(py, rows.count, &[6, n], |i, out| {
             state.set(rows.row(i))?;
-            arrays::put_rows(&state.analytical_jacobian(of, rates).matrix, out);
+            arrays::put_rows(&state.analytical_jacobian(of, rates)?.matrix, out);
             Ok(())
         })
     }

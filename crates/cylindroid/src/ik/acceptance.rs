@@ -27,7 +27,7 @@ impl Solver {
     /// use cylindroid::model::Geometry;
     ///
     /// let robot = cylindroid::load("panda")?;
-    /// let target = robot.state(robot.home())?.pose(robot.tool());
+    /// let target = robot.state(robot.home())?.pose(robot.tool())?;
     /// let goals = [Goal::pose(robot.tool(), target)];
     /// let mut model = CollisionModel::new(&robot, &CollisionOptions::default())?;
     /// model.add_obstacle("ball", &Geometry::Sphere { radius: 0.05 }, target)?;

@@ -122,7 +122,7 @@ impl FrameJacobian {
         components: Task,
         length: f64,
     ) -> Self {
-        let chain = Chain::new(mechanism, end_effector);
+        let chain = Chain::of(mechanism, end_effector);
         let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
         let rows = (0..6).filter(|&i| components.components[i]).map(|i| (i, scale(i)));
         let (rows, k) = (rows.collect::<Vec<_>>(), chain.n());

@@ -61,7 +61,7 @@ impl ClosedForm {
         if components.components != Task::POSE.components {
             return None;
         }
-        let chain = Chain::new(mechanism, end_effector);
+        let chain = Chain::of(mechanism, end_effector);
         let all = chain.coordinates();
         let free: Vec<_> = (0..all.len()).filter(|&i| !options.fixed.contains(&all[i])).collect();
         let with_locked =

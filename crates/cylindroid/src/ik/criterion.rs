@@ -83,7 +83,7 @@ impl Criterion {
     pub(super) fn coordinates(&self, mechanism: &Mechanism) -> Vec<usize> {
         match *self {
             Self::Manipulability { end_effector, .. } => {
-                Chain::new(mechanism, end_effector).coordinates().to_vec()
+                Chain::of(mechanism, end_effector).coordinates().to_vec()
             }
             Self::LimitAvoidance { .. } => Vec::new(),
         }

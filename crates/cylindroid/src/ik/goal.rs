@@ -124,7 +124,7 @@ impl Goal {
     ///
     /// // The complete pose, then its position only.
     /// let robot = cylindroid::load("ur5e")?;
-    /// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+    /// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool())?;
     /// let pose = Goal::pose(robot.tool(), target);
     /// let position = Goal::frame(robot.tool(), Task::POSITION, target);
     /// assert!(solve(&robot, &[pose], &IkOptions::default())?.success);
@@ -153,7 +153,7 @@ impl Goal {
     /// let panda = cylindroid::load("panda")?;
     /// let (hand, elbow) = (panda.tool(), panda.frame("link4")?);
     /// let state = panda.state(&[0.0, 0.2, 0.0, -1.5, 0.4, 1.2, 0.3])?;
-    /// let goal = Goal::relative(hand, elbow, state.pose(elbow).inverse() * state.pose(hand));
+    /// let goal = Goal::relative(hand, elbow, state.pose(elbow)?.inverse() * state.pose(hand)?);
     /// let found = solve(&panda, &[goal], &IkOptions::default())?;
     /// assert!(found.success && found.position_error < 1e-5);
     /// # Ok::<(), cylindroid::Error>(())
@@ -184,7 +184,7 @@ impl Goal {
     /// let panda = cylindroid::load("panda")?;
     /// let point = Vec3::new(0.8, 0.5, 0.1);
     /// let found = solve(&panda, &[Goal::gaze(panda.tool(), point)], &IkOptions::default())?;
-    /// let hand = panda.state(&found.q)?.pose(panda.tool());
+    /// let hand = panda.state(&found.q)?.pose(panda.tool())?;
     /// let way = point - hand.translation;
     /// assert!(hand.rotation.z_axis().cross(way).norm() < 1e-5 * way.norm());
     /// # Ok::<(), cylindroid::Error>(())

@@ -19,7 +19,7 @@
 //! use cylindroid::ik::{Goal, IkOptions, solve};
 //!
 //! let robot = cylindroid::load("panda")?;
-//! let target = robot.state(&[0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5])?.pose(robot.tool());
+//! let target = robot.state(&[0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5])?.pose(robot.tool())?;
 //! let found = solve(&robot, &[Goal::pose(robot.tool(), target)], &IkOptions::default())?;
 //! assert!(found.success && found.position_error < 1e-5);
 //! # Ok::<(), cylindroid::Error>(())

@@ -229,7 +229,11 @@ mod tests {
             let budget = Budget { iterations: usize::MAX, time: None };
             let (mut closer, mut farther, mut few_farther) = (0, 0, 0);
             for _ in 0..targets {
-                let target = robot.state(&draw(&robot, &mut random)).unwrap().pose(robot.tool());
+                let target = robot
+                    .state(&draw(&robot, &mut random))
+                    .unwrap()
+                    .tip(robot.tool())
+                    .world_from_tip;
                 let goals = [Goal::pose(robot.tool(), target)];
                 let initial_guess = Some(draw(&robot, &mut random));
                 let options =

@@ -54,7 +54,7 @@ const PERTURBATION: f64 = 1.0;
 /// // Points on a line, each solution the initial guess of the next.
 /// let robot = cylindroid::load("panda")?;
 /// let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
-/// let mut target = robot.state(&q)?.pose(robot.tool());
+/// let mut target = robot.state(&q)?.pose(robot.tool())?;
 /// let goal = Goal::pose(robot.tool(), target);
 /// let mut solver = Solver::new(&robot, &[goal], &IkOptions::default())?;
 /// for _ in 0..5 {
@@ -114,7 +114,7 @@ pub fn solve(mechanism: &Mechanism, goals: &[Goal], options: &IkOptions) -> Resu
 ///
 /// // Elbow up and down, shoulder left and right, wrist flipped or not.
 /// let robot = cylindroid::load("ur5e")?;
-/// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+/// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool())?;
 /// let goals = [Goal::pose(robot.tool(), target)];
 /// assert_eq!(solve_distinct(&robot, &goals, &IkOptions::default(), 8)?.len(), 8);
 /// # Ok::<(), cylindroid::Error>(())
@@ -188,7 +188,7 @@ impl Solver {
     ///
     /// // The wrist of a UR5e is not spherical, but three of its axes are parallel.
     /// let robot = cylindroid::load("ur5e")?;
-    /// let goal = Goal::pose(robot.tool(), robot.state(robot.home())?.pose(robot.tool()));
+    /// let goal = Goal::pose(robot.tool(), robot.state(robot.home())?.pose(robot.tool())?);
     /// assert!(Solver::new(&robot, &[goal], &IkOptions::default())?.analytic().is_some());
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -232,7 +232,7 @@ impl Solver {
     /// use cylindroid::ik::{Goal, IkOptions, Solver};
     ///
     /// let robot = cylindroid::load("ur5e")?;
-    /// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+    /// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool())?;
     /// let goals = [Goal::pose(robot.tool(), target)];
     /// let mut solver = Solver::new(&robot, &goals, &IkOptions::default())?;
     /// assert_eq!(solver.solve_distinct(&goals, 100)?.len(), 8);

@@ -29,7 +29,7 @@ use crate::linalg::{Matrix, Rank, Svd, run_all};
 ///
 /// let robot = cylindroid::load("panda")?;
 /// let q = [robot.home(), robot.home()].concat();
-/// let jacobians = kinematics::KinematicsBatch::new(&robot, robot.tool())
+/// let jacobians = kinematics::KinematicsBatch::new(&robot, robot.tool())?
 ///     .jacobians(&q, ReferenceFrame::Local)?;
 /// let inverses = InverseBatch::new(Method::default(), 6, robot.n())?.inverses(&jacobians)?;
 /// assert_eq!(inverses.matrices.len(), 2 * robot.n() * 6);

@@ -35,7 +35,7 @@ const LARGE: usize = 4 << 20;
 /// use cylindroid::kinematics::KinematicsBatch;
 ///
 /// let robot = cylindroid::load("panda")?;
-/// let batch = KinematicsBatch::new(&robot, robot.tool());
+/// let batch = KinematicsBatch::new(&robot, robot.tool())?;
 /// let q = [robot.home(), robot.home()].concat();
 /// let jacobians = batch.jacobians(&q, ReferenceFrame::LocalWorldAligned)?;
 /// assert_eq!(jacobians.len(), 2 * 6 * robot.n());
@@ -54,11 +54,10 @@ impl KinematicsBatch {
 
     /// For an end effector.
     ///
-    /// # Panics
-    /// If the frame is of another mechanism.
-    #[must_use]
-    pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
-        Self { mechanism: mechanism.clone(), chain: Chain::new(mechanism, of) }
+    /// # Errors
+    /// A frame of another mechanism.
+    pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Result<Self> {
+        Ok(Self { mechanism: mechanism.clone(), chain: Chain::new(mechanism, of)? })
     }
 
     /// Number of coordinates of a configuration: that of the mechanism.

@@ -10,6 +10,7 @@ use super::jacobian::{ReferenceFrame, Tip};
 use super::serial::Serial;
 use super::serial_single;
 use super::state::EndEffector;
+use crate::error::Result;
 use crate::linalg::Matrix;
 use crate::model::{Mechanism, Node, NodeKind};
 use crate::spatial::{AlignedPose, Pose, Vec3};
@@ -36,7 +37,7 @@ impl Chain {
     /// use cylindroid::{Matrix, ReferenceFrame};
     ///
     /// let robot = cylindroid::load("panda")?;
-    /// let mut chain = Chain::new(&robot, robot.tool());
+    /// let mut chain = Chain::new(&robot, robot.tool())?;
     /// let mut jacobian = Matrix::zeros(6, chain.n());
     /// // In a control loop, without allocation:
     /// let world_from_tool = chain.set(robot.home());
@@ -45,10 +46,17 @@ impl Chain {
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If the frame is of another mechanism.
+    /// # Errors
+    /// A frame of another mechanism.
+    pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Result<Self> {
+        let of = of.into();
+        mechanism.check_frame(of.frame)?;
+        Ok(Self::of(mechanism, of))
+    }
+
+    /// The chain to an end effector that was checked to be one of this mechanism.
     #[must_use]
-    pub fn new(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
+    pub(crate) fn of(mechanism: &Mechanism, of: impl Into<EndEffector>) -> Self {
         let (path, slot_from_tool) = path(mechanism, of.into());
         let mut coordinates: Vec<usize> =
             path.iter().flat_map(|n| n.coordinate..n.coordinate + n.kind.dof()).collect();
@@ -149,14 +157,14 @@ impl Chain {
     /// use cylindroid::{Matrix, ReferenceFrame};
     ///
     /// let robot = cylindroid::load("ur5e")?;
-    /// let mut chain = Chain::new(&robot, robot.tool());
+    /// let mut chain = Chain::new(&robot, robot.tool())?;
     /// let mut jacobian = Matrix::zeros(6, chain.n());
     /// let pose = chain.set(robot.home());
     /// chain.jacobian_into(ReferenceFrame::Local, &mut jacobian);
     /// let state = robot.state(robot.home())?;
-    /// let expected = state.jacobian(robot.tool(), ReferenceFrame::Local);
+    /// let expected = state.jacobian(robot.tool(), ReferenceFrame::Local)?;
     /// assert!(jacobian.max_difference(&expected) < 1e-12);
-    /// assert!((pose.translation - state.pose(robot.tool()).translation).norm() < 1e-12);
+    /// assert!((pose.translation - state.pose(robot.tool())?.translation).norm() < 1e-12);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
@@ -185,7 +193,7 @@ impl Chain {
     /// use cylindroid::{Matrix, ReferenceFrame};
     ///
     /// let robot = cylindroid::load("ur5e")?;
-    /// let mut chain = Chain::new(&robot, robot.tool());
+    /// let mut chain = Chain::new(&robot, robot.tool())?;
     /// chain.set(robot.home());
     /// let mut hessian = vec![Matrix::zeros(6, chain.n()); chain.n()];
     /// chain.hessian_into(ReferenceFrame::World, &mut hessian);

@@ -13,6 +13,13 @@ use crate::linalg::Matrix;
 use crate::spatial::{Twist, Vec3};
 
 impl Tip<'_> {
+    /// dJ/dq_k over n coordinates (n matrices of 6 x n).
+    pub(crate) fn hessian(&self, reference: ReferenceFrame, n: usize) -> Vec<Matrix> {
+        let mut out = vec![Matrix::zeros(6, n); n];
+        self.hessian_into(reference, &mut out);
+        out
+    }
+
     /// Writes dJ/dq_k into `out[k]` (n matrices of 6 x n).
     pub(crate) fn hessian_into(&self, reference: ReferenceFrame, out: &mut [Matrix]) {
         out.iter_mut().for_each(|m| m.as_mut_slice().fill(0.0));

@@ -119,6 +119,13 @@ impl Tip<'_> {
         a
     }
 
+    /// The Jacobian over n coordinates, 6 x n.
+    pub(crate) fn jacobian(&self, reference: ReferenceFrame, n: usize) -> Matrix {
+        let mut out = Matrix::zeros(6, n);
+        self.jacobian_into(reference, &mut out);
+        out
+    }
+
     /// The Jacobian, into `out` (6 x n).
     #[inline]
     pub(crate) fn jacobian_into(&self, reference: ReferenceFrame, out: &mut Matrix) {

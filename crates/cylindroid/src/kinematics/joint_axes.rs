@@ -85,7 +85,7 @@ impl State {
     /// let state = arms.state(arms.home())?;
     /// let [left, right] = [state.contact_points()[0], state.contact_points()[1]];
     /// let middle = (left[1] + right[1]) * 0.5;
-    /// assert!((middle - state.pose(arms.reference()).translation).norm() < 1e-12);
+    /// assert!((middle - state.pose(arms.reference())?.translation).norm() < 1e-12);
     /// assert!((left[0] - left[1]).norm() < 1e-9);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -105,6 +105,6 @@ impl State {
 
     /// The pose of a link in the world.
     pub(crate) fn link_pose(&self, link: usize) -> Pose {
-        self.pose(self.mechanism().link_frame(link))
+        self.tip(self.mechanism().link_frame(link)).world_from_tip
     }
 }

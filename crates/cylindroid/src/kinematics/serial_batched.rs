@@ -384,8 +384,8 @@ mod tests {
         for (robot, reference) in robots.iter().flat_map(|robot| references.map(|r| (robot, r))) {
             let (name, n, tip) = (robot.name(), robot.n(), robot.tool());
             let chain = match name {
-                "coupled" => Chain::new(robot, robot.frame("tip").unwrap()),
-                _ => Chain::new(robot, tip),
+                "coupled" => Chain::of(robot, robot.frame("tip").unwrap()),
+                _ => Chain::of(robot, tip),
             };
             let q: Vec<f64> =
                 (0..n * 21).map(|i| f64::from(i as u32 * 7919 % 6283) / 1e3 - 3.1).collect();

@@ -3,16 +3,15 @@
 use super::analytical::{AnalyticalJacobian, OrientationRates, analytical};
 use super::forward::forward;
 use super::jacobian::{ReferenceFrame, Tip};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::Matrix;
 use crate::model::{FrameId, Joint, Mechanism};
 use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
 /// A frame of a mechanism and a tool point fixed to it.
 ///
-/// For the frame of another mechanism, functions that return a [`Result`] return an error, and the
-/// others panic ([`Mechanism::check_frame`] asks beforehand). A tool that is not finite gives
-/// numbers that are not finite.
+/// Functions return an error for the frame of another mechanism ([`Mechanism::check_frame`] asks
+/// beforehand). A tool that is not finite gives numbers that are not finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// The frame.
@@ -44,7 +43,7 @@ impl Mechanism {
     /// ```
     /// let robot = cylindroid::load("panda")?;
     /// let state = robot.state(robot.home())?;
-    /// println!("{:?}", state.pose(robot.tool()).translation);
+    /// println!("{:?}", state.pose(robot.tool())?.translation);
     /// assert!(robot.state(&[0.0]).is_err()); // one entry for seven joints
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -68,9 +67,9 @@ impl State {
     /// ```
     /// let robot = cylindroid::load("ur5e")?;
     /// let mut state = robot.state(robot.home())?;
-    /// let before = state.pose(robot.tool());
+    /// let before = state.pose(robot.tool())?;
     /// state.set(&[0.1, -1.0, 1.2, 0.3, 0.4, 0.5])?;
-    /// assert!((state.pose(robot.tool()).translation - before.translation).norm() > 0.1);
+    /// assert!((state.pose(robot.tool())?.translation - before.translation).norm() > 0.1);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
@@ -102,22 +101,21 @@ impl State {
     ///
     /// let robot = cylindroid::load("panda")?;
     /// let state = robot.state(robot.home())?;
-    /// let flange = state.pose(robot.tool());
+    /// let flange = state.pose(robot.tool())?;
     /// // A tool tip 0.1 m beyond the frame, along its z axis.
     /// let tip = EndEffector {
     ///     frame: robot.tool(),
     ///     frame_from_tool: Pose::from_translation(Vec3::new(0.0, 0.0, 0.1)),
     /// };
-    /// assert!((state.pose(tip).translation - flange.translation).norm() - 0.1 < 1e-15);
+    /// assert!((state.pose(tip)?.translation - flange.translation).norm() - 0.1 < 1e-15);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If the frame is of another mechanism.
+    /// # Errors
+    /// A frame of another mechanism.
     #[doc(alias = "forward kinematics")]
-    #[must_use]
-    pub fn pose(&self, of: impl Into<EndEffector>) -> Pose {
-        self.tip(of.into()).world_from_tip
+    pub fn pose(&self, of: impl Into<EndEffector>) -> Result<Pose> {
+        Ok(self.checked_tip(of)?.world_from_tip)
     }
 
     /// The geometric Jacobian, 6 x n: twist of the tool = J * joint velocities.
@@ -135,7 +133,7 @@ impl State {
     ///
     /// let robot = cylindroid::load("panda")?;
     /// let state = robot.state(robot.home())?;
-    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)?;
     /// let velocities = [0.1; 7];
     /// let twist = state.twist(&velocities, robot.tool(), ReferenceFrame::LocalWorldAligned)?;
     /// let product = jacobian.mul_vec(&velocities);
@@ -143,14 +141,15 @@ impl State {
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If the frame is of another mechanism.
+    /// # Errors
+    /// A frame of another mechanism.
     #[doc(alias = "geometric Jacobian")]
-    #[must_use]
-    pub fn jacobian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Matrix {
-        let mut out = Matrix::zeros(6, self.mechanism.n());
-        self.tip(of.into()).jacobian_into(reference, &mut out);
-        out
+    pub fn jacobian(
+        &self,
+        of: impl Into<EndEffector>,
+        reference: ReferenceFrame,
+    ) -> Result<Matrix> {
+        Ok(self.checked_tip(of)?.jacobian(reference, self.mechanism.n()))
     }
 
     /// [`State::jacobian`] without allocation.
@@ -163,22 +162,25 @@ impl State {
     /// let mut jacobian = Matrix::zeros(6, robot.n());
     /// for step in 0..10 {
     ///     state.set(&[0.1 * f64::from(step); 6])?;
-    ///     state.jacobian_into(robot.tool(), ReferenceFrame::World, &mut jacobian);
+    ///     state.jacobian_into(robot.tool(), ReferenceFrame::World, &mut jacobian)?;
     /// }
-    /// assert_eq!(jacobian, state.jacobian(robot.tool(), ReferenceFrame::World));
+    /// assert_eq!(jacobian, state.jacobian(robot.tool(), ReferenceFrame::World)?);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If `out` is not 6 x n, or the frame is of another mechanism.
+    /// # Errors
+    /// An `out` that is not 6 x n; a frame of another mechanism.
     pub fn jacobian_into(
         &self,
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
         out: &mut Matrix,
-    ) {
-        assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the Jacobian");
-        self.tip(of.into()).jacobian_into(reference, out);
+    ) -> Result<()> {
+        let tip = self.checked_tip(of)?;
+        Error::check_len("rows of the Jacobian", 6, out.rows())?;
+        Error::check_len("columns of the Jacobian", self.mechanism.n(), out.cols())?;
+        tip.jacobian_into(reference, out);
+        Ok(())
     }
 
     /// All joints at once, into `out` (6 x n): the twist that a unit rate of each coordinate gives
@@ -195,7 +197,7 @@ impl State {
     /// let state = robot.state(robot.home())?;
     /// let mut twists = Matrix::zeros(6, 6);
     /// state.joint_twists_into(&mut twists);
-    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::World);
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::World)?;
     /// assert!(twists.max_difference(&jacobian) < 1e-12);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
@@ -249,11 +251,10 @@ impl State {
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
     ) -> Result<Matrix> {
-        let of = of.into();
-        self.mechanism.check_frame(of.frame)?;
+        let tip = self.checked_tip(of)?;
         self.mechanism.check_q("velocities", velocities)?;
         let mut out = Matrix::zeros(6, self.mechanism.n());
-        self.tip(of).jacobian_dot_into(velocities, reference, &mut out);
+        tip.jacobian_dot_into(velocities, reference, &mut out);
         Ok(out)
     }
 
@@ -270,19 +271,19 @@ impl State {
     /// use cylindroid::ReferenceFrame;
     ///
     /// let robot = cylindroid::load("ur5e")?;
-    /// let hessian = robot.state(robot.home())?.hessian(robot.tool(), ReferenceFrame::World);
+    /// let hessian = robot.state(robot.home())?.hessian(robot.tool(), ReferenceFrame::World)?;
     /// assert_eq!(hessian.len(), robot.n()); // dJ/dq_k for each coordinate k
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If the frame is of another mechanism.
-    #[must_use]
-    pub fn hessian(&self, of: impl Into<EndEffector>, reference: ReferenceFrame) -> Vec<Matrix> {
-        let n = self.mechanism.n();
-        let mut out = vec![Matrix::zeros(6, n); n];
-        self.tip(of.into()).hessian_into(reference, &mut out);
-        out
+    /// # Errors
+    /// A frame of another mechanism.
+    pub fn hessian(
+        &self,
+        of: impl Into<EndEffector>,
+        reference: ReferenceFrame,
+    ) -> Result<Vec<Matrix>> {
+        Ok(self.checked_tip(of)?.hessian(reference, self.mechanism.n()))
     }
 
     /// The analytical Jacobian: rates of position and of orientation angles.
@@ -292,21 +293,21 @@ impl State {
     ///
     /// let robot = cylindroid::load("panda")?;
     /// let state = robot.state(robot.home())?;
-    /// let analytical = state.analytical_jacobian(robot.tool(), OrientationRates::RotationVector);
+    /// let analytical = state.analytical_jacobian(robot.tool(), OrientationRates::RotationVector)?;
     /// assert!(analytical.exists);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If the frame is of another mechanism.
-    #[must_use]
+    /// # Errors
+    /// A frame of another mechanism.
     pub fn analytical_jacobian(
         &self,
         of: impl Into<EndEffector>,
         rates: OrientationRates,
-    ) -> AnalyticalJacobian {
-        let of = of.into();
-        analytical(self.pose(of), &self.jacobian(of, ReferenceFrame::LocalWorldAligned), rates)
+    ) -> Result<AnalyticalJacobian> {
+        let tip = self.checked_tip(of)?;
+        let jacobian = tip.jacobian(ReferenceFrame::LocalWorldAligned, self.mechanism.n());
+        Ok(analytical(tip.world_from_tip, &jacobian, rates))
     }
 
     /// The twist of the tool at the joint velocities `velocities`.
@@ -331,10 +332,8 @@ impl State {
         of: impl Into<EndEffector>,
         reference: ReferenceFrame,
     ) -> Result<Twist> {
-        let of = of.into();
-        self.mechanism.check_frame(of.frame)?;
+        let tip = self.checked_tip(of)?;
         self.mechanism.check_q("velocities", velocities)?;
-        let tip = self.tip(of);
         let world = tip.world_twist(velocities);
         let pose = tip.world_from_tip;
         Ok(match reference {
@@ -349,7 +348,15 @@ impl State {
         &self.slots
     }
 
-    pub(crate) fn tip(&self, of: EndEffector) -> Tip<'_> {
+    fn checked_tip(&self, of: impl Into<EndEffector>) -> Result<Tip<'_>> {
+        let of = of.into();
+        self.mechanism.check_frame(of.frame)?;
+        Ok(self.tip(of))
+    }
+
+    /// The tip of an end effector that was checked to be one of this mechanism.
+    pub(crate) fn tip(&self, of: impl Into<EndEffector>) -> Tip<'_> {
+        let of = of.into();
         let frame = self.mechanism.frame_of(of.frame);
         Tip {
             nodes: self.mechanism.nodes(),

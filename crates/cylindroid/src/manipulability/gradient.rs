@@ -343,5 +343,7 @@ fn constraint_hessian(state: &State, chain: &ClosedChain) -> Vec<Matrix> {
         }
         dm
     };
-    state.hessian(chain.reference, ReferenceFrame::LocalWorldAligned).iter().map(of).collect()
+    let tip = state.tip(chain.reference);
+    let hessian = tip.hessian(ReferenceFrame::LocalWorldAligned, state.mechanism().n());
+    hessian.iter().map(of).collect()
 }

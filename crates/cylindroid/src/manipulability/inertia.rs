@@ -9,6 +9,7 @@
 //! Source   Featherstone, Rigid Body Dynamics Algorithms, 2008, eq. 2.63 (linear first here)
 //! Checked  tests/it/manipulability/metrics.rs::inertia_*
 
+use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::Matrix;
 use crate::model::FrameId;
@@ -33,24 +34,24 @@ use crate::spatial::Mat3;
 /// // The catalogue gives no masses to the links of a four-bar.
 /// let mechanism = cylindroid::load("four-bar")?;
 /// let state = mechanism.state(mechanism.home())?;
-/// assert!(body_inertia(&state, mechanism.reference()).is_none());
+/// assert!(body_inertia(&state, mechanism.reference())?.is_none());
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 ///
-/// # Panics
-/// If the frame is of another mechanism.
-#[must_use]
-pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
+/// # Errors
+/// A frame of another mechanism.
+pub fn body_inertia(state: &State, frame: FrameId) -> Result<Option<Matrix>> {
     let mechanism = state.mechanism();
+    mechanism.check_frame(frame)?;
     let slot = mechanism.frame_of(frame).slot;
-    let origin = state.pose(frame).translation;
+    let origin = state.tip(frame).world_from_tip.translation;
     let mut sum = Matrix::zeros(6, 6);
     let mut total = 0.0;
     for (i, link) in mechanism.links().iter().enumerate() {
         let link_frame = mechanism.link_frame(i);
         let carried = mechanism.frame_of(link_frame).slot == slot;
         let (Some(inertial), true) = (&link.inertial, carried) else { continue };
-        let world_from_inertia = state.pose(link_frame) * inertial.link_from_inertia;
+        let world_from_inertia = state.tip(link_frame).world_from_tip * inertial.link_from_inertia;
         let mass = inertial.mass;
         let arm = Mat3::skew(world_from_inertia.translation - origin);
         let turn = world_from_inertia.rotation.matrix();
@@ -67,8 +68,8 @@ pub fn body_inertia(state: &State, frame: FrameId) -> Option<Matrix> {
         total += mass;
     }
     if !(total > 0.0) {
-        return None;
+        return Ok(None);
     }
     let kept = mechanism.dimension().components();
-    Some(Matrix::from_fn(kept.len(), kept.len(), |i, j| sum[(kept[i], kept[j])]))
+    Ok(Some(Matrix::from_fn(kept.len(), kept.len(), |i, j| sum[(kept[i], kept[j])])))
 }

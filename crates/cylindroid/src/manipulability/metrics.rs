@@ -178,7 +178,7 @@ impl Metrics {
                  files), or give a metric Wu of twists"
             ),
         };
-        let inertia = body_inertia(state, frame).ok_or_else(|| refuse("has no mass"))?;
+        let inertia = body_inertia(state, frame)?.ok_or_else(|| refuse("has no mass"))?;
         self.with_object(&inertia).map_err(|_| refuse("has no inertia about an axis"))
     }
 

@@ -149,7 +149,7 @@ impl Stiffness {
             free,
             rigid,
             undetermined: motions.hyperstatic(),
-            point: state.pose(chain.reference).translation,
+            point: state.tip(chain.reference).world_from_tip.translation,
             state: state.clone(),
             chain,
             elastic,

@@ -38,7 +38,7 @@ use crate::tolerance::ZERO_AXIS;
 /// builder.frame("tip", "lever", Pose::from_translation(Vec3::X)).tool("tip");
 /// let lever = builder.build()?;
 /// assert_eq!((lever.n(), lever.links().len()), (1, 2));
-/// assert_eq!(lever.state(&[0.0])?.pose(lever.tool()).translation, Vec3::X);
+/// assert_eq!(lever.state(&[0.0])?.pose(lever.tool())?.translation, Vec3::X);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -29,7 +29,7 @@ impl Mechanism {
     /// let locked = panda.with_fixed_joints(&[&name], panda.home())?;
     /// assert_eq!(locked.n(), panda.n() - 1);
     /// let at_home = |robot: &cylindroid::Mechanism| Ok::<_, cylindroid::Error>(
-    ///     robot.state(robot.home())?.pose(robot.tool()),
+    ///     robot.state(robot.home())?.pose(robot.tool())?,
     /// );
     /// let way = at_home(&panda)?.translation - at_home(&locked)?.translation;
     /// assert!(way.norm() < 1e-15);

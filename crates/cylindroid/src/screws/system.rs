@@ -87,7 +87,7 @@ impl ScrewSystem {
     ///
     /// let robot = load("youbot")?;
     /// let state = robot.state(robot.home())?;
-    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)?;
     /// let system = ScrewSystem::of_columns(&jacobian, &ScrewOptions::with_length(robot.reach()))?;
     /// println!("order {}, class {}", system.order(), system.class());
     /// # Ok::<(), cylindroid::Error>(())

@@ -109,7 +109,7 @@ impl Evaluator {
             end_effector,
             task,
             length,
-            kinematics: KinematicsBatch::new(mechanism, end_effector),
+            kinematics: KinematicsBatch::new(mechanism, end_effector)?,
             scaled,
             yoshikawa,
             payload,

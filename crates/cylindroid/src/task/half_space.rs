@@ -94,13 +94,13 @@ impl HalfSpace {
 
     /// The distance inside (m, negative outside).
     pub(crate) fn room(&self, state: &State) -> f64 {
-        self.inwards().dot(state.pose(self.end_effector).translation - self.point)
+        self.inwards().dot(state.tip(self.end_effector).world_from_tip.translation - self.point)
     }
 
     /// The gradient of the distance over the n coordinates; `jacobian` is memory, 6 x n.
     pub(crate) fn gradient_into(&self, state: &State, jacobian: &mut Matrix, gradient: &mut [f64]) {
         let normal = self.inwards();
-        state.jacobian_into(self.end_effector, ReferenceFrame::LocalWorldAligned, jacobian);
+        state.tip(self.end_effector).jacobian_into(ReferenceFrame::LocalWorldAligned, jacobian);
         for (j, g) in gradient.iter_mut().enumerate() {
             let column = jacobian.column(j);
             *g = normal.x * column[0] + normal.y * column[1] + normal.z * column[2];

@@ -37,18 +37,20 @@ impl RelativeFrame {
 
     /// The error at `state`, zero in components that do not count.
     pub(crate) fn error(&self, state: &State) -> Twist {
-        let seen = state.pose(self.reference).inverse() * state.pose(self.end_effector);
+        let seen = state.tip(self.reference).world_from_tip.inverse()
+            * state.tip(self.end_effector).world_from_tip;
         self.components.error(seen, self.target)
     }
 
     /// The Jacobian at `state`, of all six components, into `out` (6 x n); `other` is memory of the
     /// same size.
     pub(crate) fn jacobian_into(&self, state: &State, other: &mut Matrix, out: &mut Matrix) {
-        let (a, b) = (state.pose(self.reference), state.pose(self.end_effector));
+        let (a, b) =
+            (state.tip(self.reference).world_from_tip, state.tip(self.end_effector).world_from_tip);
         let a_from_b = a.inverse() * b;
         let aligned = ReferenceFrame::LocalWorldAligned;
-        state.jacobian_into(self.end_effector, aligned, out);
-        state.jacobian_into(self.reference, aligned, other);
+        state.tip(self.end_effector).jacobian_into(aligned, out);
+        state.tip(self.reference).jacobian_into(aligned, other);
         let arm = b.translation - a.translation;
         let turn = a.rotation.matrix();
         let all = Task { components: [true; 6], ..self.components };

@@ -63,16 +63,16 @@ fn hot_paths_allocate_nothing() {
     for name in catalogue::names() {
         let robot = catalogue::load(name).unwrap();
         let home = robot.home().to_vec();
-        let start = robot.state(&home).unwrap().pose(robot.tool());
+        let start = robot.state(&home).unwrap().pose(robot.tool()).unwrap();
 
         let mut state = robot.state(&home).unwrap();
-        let mut chain = Chain::new(&robot, robot.tool());
+        let mut chain = Chain::new(&robot, robot.tool()).unwrap();
         let mut j = Matrix::zeros(6, robot.n());
         let mut narrow = Matrix::zeros(6, chain.n());
         let counted = count(|| {
             for _ in 0..100 {
                 state.set(&home).unwrap();
-                state.jacobian_into(robot.tool(), ReferenceFrame::World, &mut j);
+                state.jacobian_into(robot.tool(), ReferenceFrame::World, &mut j).unwrap();
                 chain.set(&home);
                 chain.jacobian_into(ReferenceFrame::Local, &mut narrow);
             }
@@ -122,7 +122,7 @@ fn hot_paths_allocate_nothing() {
 fn escapes_allocate_nothing() {
     let ur5e = catalogue::load("ur5e").unwrap();
     let mut q = vec![0.0, -1.2, 0.0, -0.4, 1.2, 0.3];
-    let target = ur5e.state(&[0.1, -1.2, 0.8, -0.6, 1.1, 0.3]).unwrap().pose(ur5e.tool());
+    let target = ur5e.state(&[0.1, -1.2, 0.8, -0.6, 1.1, 0.3]).unwrap().pose(ur5e.tool()).unwrap();
     let mut servo = Servo::new(&ur5e, ServoOptions::new(&ur5e)).unwrap();
     let (mut changed, mut left) = (0, f64::INFINITY);
     let counted = count(|| {
@@ -147,7 +147,7 @@ fn frame(end_effector: EndEffector, components: Task, target: Pose) -> TaskObjec
 fn robots_that_lag_allocate_nothing() {
     let plant = Plant { delay: 0.02, time_constant: 0.01, noise: 1e-4 };
     let panda = catalogue::load("panda").unwrap();
-    let start = panda.state(panda.home()).unwrap().pose(panda.tool());
+    let start = panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(0.3, 0.8, -0.9), ..start };
     let options = ServoOptions { plant, jerk: 200.0, ..ServoOptions::new(&panda) };
     let mut servo = Servo::new(&panda, options).unwrap();
@@ -174,7 +174,7 @@ fn robots_that_lag_allocate_nothing() {
     let mut servo = Servo::new(&five_bar, options).unwrap();
     let q = assemble(&five_bar, five_bar.home(), &[]).unwrap().q;
     servo.start_from(&q).unwrap();
-    let pose = five_bar.state(&q).unwrap().pose(five_bar.reference());
+    let pose = five_bar.state(&q).unwrap().pose(five_bar.reference()).unwrap();
     let actuated: Vec<f64> = five_bar.actuated().map(|i| q[i]).collect();
     let passive = (0..five_bar.n()).find(|&i| !five_bar.coordinates()[i].actuated).unwrap();
     let sensors = [(passive, q[passive] + 1e-5)];
@@ -196,7 +196,7 @@ fn closed_chains_allocate_nothing() {
             continue;
         }
         let home = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
-        let start = mechanism.state(&home).unwrap().pose(mechanism.reference());
+        let start = mechanism.state(&home).unwrap().pose(mechanism.reference()).unwrap();
         // Manipulability is for trees.
         let mut secondary = SecondaryTask::all(&home).to_vec();
         secondary.retain(|s| !matches!(s, SecondaryTask::Manipulability { .. }));
@@ -236,7 +236,7 @@ fn closed_chains_allocate_nothing() {
 fn batches_allocate_nothing() {
     for name in ["panda", "ur5e", "youbot", "3r"] {
         let robot = catalogue::load(name).unwrap();
-        let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, robot.tool()));
+        let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, robot.tool()).unwrap());
         for rows in [8, 16, KinematicsBatch::CHUNK] {
             let q = robot.home().repeat(rows);
             let (mut poses, mut jacobians) = (vec![0.0; rows * 16], vec![0.0; rows * 6 * n]);
@@ -259,7 +259,7 @@ fn formulas_allocate_nothing() {
         let robot = catalogue::load(name).unwrap();
         let mut ik = Analytic::with_locked(&robot, robot.tool(), locked).unwrap();
         let mut start = robot.home().to_vec();
-        let target = robot.state(&start).unwrap().pose(robot.tool());
+        let target = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
         let mut answers = 0;
         let counted = count(|| {
             for _ in 0..100 {
@@ -293,7 +293,7 @@ fn inertia_allocates_nothing() {
         ServoOptions { inertia_weights: true, task: Task::POSITION, ..ServoOptions::new(&arm) };
     let mut servo = Servo::new(&arm, options).unwrap();
     let mut q = vec![0.3, 0.8, -0.5, 0.9];
-    let start = arm.state(&q).unwrap().pose(arm.tool());
+    let start = arm.state(&q).unwrap().pose(arm.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(0.01, 0.02, 0.0), ..start };
     let mut moved = 0.0;
     let counted = count(|| {

@@ -36,7 +36,7 @@ fn many_tasks_allocate_nothing() {
         let mut q = robot.home().to_vec();
         let state = robot.state(&q).unwrap();
         let last = robot.frame(&robot.links().last().unwrap().name).unwrap();
-        let mut pose = state.pose(last);
+        let mut pose = state.pose(last).unwrap();
         pose.translation.x += 0.3;
         let middle = robot.frame(&robot.links()[4].name).unwrap();
         let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
@@ -71,7 +71,7 @@ fn many_tasks_allocate_nothing() {
 fn escapes_of_tasks_allocate_nothing() {
     let robot = catalogue::load("3r").unwrap();
     let mut q = vec![0.3, 0.0, 0.0];
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: pose.translation * 0.7, ..pose };
     let task = MotionTask::new("hand", frame(robot.tool().into(), Task::POSITION, target));
     let options = TaskServoOptions { dt: 4e-3, ..TaskServoOptions::new(&robot) };
@@ -98,7 +98,7 @@ fn tasks_of_closed_chains_allocate_nothing() {
         let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
         let defaults = ServoOptions::new(&mechanism);
         let end_effector = defaults.end_effector;
-        let pose = mechanism.state(&q).unwrap().pose(end_effector);
+        let pose = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
         let target = Pose { translation: pose.translation + Vec3::X * 1e-3, ..pose };
         let objective = frame(end_effector, defaults.task, target);
         let posture = TaskObjective::Posture { q: q.clone() };

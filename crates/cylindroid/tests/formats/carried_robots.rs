@@ -32,8 +32,8 @@ fn a_robot_on_a_carriage_moves_with_it() {
     assert_eq!(cell.coordinates()[0].name, "rail");
     let mut q = vec![0.4];
     q.extend(alone.home());
-    let there = cell.state(&q).unwrap().pose(cell.frame("arm/tool0").unwrap());
-    let here = alone.state(alone.home()).unwrap().pose(alone.frame("tool0").unwrap());
+    let there = cell.state(&q).unwrap().pose(cell.frame("arm/tool0").unwrap()).unwrap();
+    let here = alone.state(alone.home()).unwrap().pose(alone.frame("tool0").unwrap()).unwrap();
     let carried = here.translation + Vec3::new(0.4, 0.1, 0.5);
     assert!((there.translation - carried).norm() < 1e-14, "{there:?}");
     assert!((there.rotation.log() - here.rotation.log()).norm() < 1e-14);

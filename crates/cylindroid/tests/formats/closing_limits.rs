@@ -57,7 +57,7 @@ fn range(mechanism: &Mechanism, joint: &str) -> [f64; 2] {
         let mut q = mechanism.home().to_vec();
         let end_effector = servo.options().end_effector;
         for _ in 0..600 {
-            let now = mechanism.state(&q).unwrap().pose(end_effector);
+            let now = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
             // Ahead of the coupler on its way round the crank's pivot.
             let away = Vec3::new(now.translation.y, -now.translation.x, 0.0) * (0.2 * side);
             let target = Pose { translation: now.translation + away, ..now };

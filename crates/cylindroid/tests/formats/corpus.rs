@@ -100,7 +100,7 @@ fn compare(m: &Mechanism, of: &Value) -> Result<(), String> {
         for (name, pose) in case["poses"].as_object().unwrap() {
             let pose = numbers(pose);
             let frame = m.frame(name).map_err(|e| e.to_string())?;
-            let own = state.pose(frame);
+            let own = state.pose(frame).unwrap();
             let expected = Pose {
                 translation: Vec3::new(pose[0], pose[1], pose[2]),
                 rotation: rotation(&pose[3..]),

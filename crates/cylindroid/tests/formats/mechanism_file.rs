@@ -132,7 +132,7 @@ fn a_reversed_joint_keeps_the_sign_of_its_coordinate() {
         let of = |m| origin.inverse() * frame(m, &q, "a");
         assert_close(of(&reversed), of(&forward).inverse(), 1e-15);
         for m in [&forward, &reversed] {
-            let by_nodes = m.state(&q).unwrap().pose(m.frame("a").unwrap());
+            let by_nodes = m.state(&q).unwrap().pose(m.frame("a").unwrap()).unwrap();
             assert_close(by_nodes, frame(m, &q, "a"), 1e-15);
         }
     }

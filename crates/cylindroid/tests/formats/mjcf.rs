@@ -446,7 +446,7 @@ fn frames_move_all_that_they_contain() {
     let body = m.links().iter().find(|l| l.name == "a").unwrap();
     let centre = body.inertial.unwrap().link_from_inertia.translation;
     assert!((centre - Vec3::new(1.0, 0.0, 1.0)).norm() < 1e-12, "{centre:?}");
-    let site = m.state(m.home()).unwrap().pose(m.frame("s").unwrap()).translation;
+    let site = m.state(m.home()).unwrap().pose(m.frame("s").unwrap()).unwrap().translation;
     assert!((site - Vec3::new(1.0, -1.0, 0.0)).norm() < 1e-12, "{site:?}");
 }
 

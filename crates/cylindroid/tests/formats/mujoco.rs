@@ -51,7 +51,7 @@ fn qvel_from_rates(state: &State) -> Matrix {
         }
         if joint.kind == JointKind::Free {
             let body = m.frame(&m.links()[joint.child].name).unwrap();
-            let turn = state.pose(body).rotation.matrix().to_rows();
+            let turn = state.pose(body).unwrap().rotation.matrix().to_rows();
             for i in 0..3 {
                 for k in 0..3 {
                     map[(row + i, c + k)] = turn[i][k];

@@ -124,10 +124,10 @@ fn results(m: &Mechanism, turned: &[String]) -> BTreeMap<String, Vec<f64>> {
     for (at, q) in [("home", m.home()), ("q", &q)] {
         let state = m.state(q).unwrap();
         for (i, link) in m.links().iter().enumerate() {
-            let pose = state.pose(m.frame(&link.name).unwrap()).to_matrix();
+            let pose = state.pose(m.frame(&link.name).unwrap()).unwrap().to_matrix();
             add(format!("{at}: link {}", m.links()[i].name), pose.as_flattened().to_vec());
         }
-        let jacobian = state.jacobian(reference, ReferenceFrame::World);
+        let jacobian = state.jacobian(reference, ReferenceFrame::World).unwrap();
         for (c, (name, sign)) in original.iter().enumerate() {
             let column = jacobian.column(c).iter().map(|x| sign * x).collect();
             add(format!("{at}: column {name}"), column);

@@ -37,10 +37,12 @@ fn the_arm_of_a_panda_moves_alone() {
     let (own, whole) = (arm.state(arm.home()).unwrap(), robot.state(&q).unwrap());
     for (a, b) in arm.frame_ids().zip(robot.frame_ids()) {
         assert_eq!(arm.frame_of(a).name, robot.frame_of(b).name);
-        let way = own.pose(a).error_to(whole.pose(b));
+        let way = own.pose(a).unwrap().error_to(whole.pose(b).unwrap());
         assert!(way.linear.norm() + way.angular.norm() < 1e-14);
-        let [j, k] =
-            [own.jacobian(a, ReferenceFrame::Local), whole.jacobian(b, ReferenceFrame::Local)];
+        let [j, k] = [
+            own.jacobian(a, ReferenceFrame::Local).unwrap(),
+            whole.jacobian(b, ReferenceFrame::Local).unwrap(),
+        ];
         for column in 0..7 {
             for row in 0..6 {
                 assert!((j[(row, column)] - k[(row, column)]).abs() < 1e-14);

@@ -154,7 +154,7 @@ fn a_reference_may_be_a_frame() {
     ";
     let m = read_toml(text).unwrap();
     assert_eq!((m.reference(), tool(&m)), (m.tool(), ("tip", ToolChoice::Named)));
-    assert_eq!(m.state(&[0.0]).unwrap().pose(m.reference()).translation.x, 1.0);
+    assert_eq!(m.state(&[0.0]).unwrap().pose(m.reference()).unwrap().translation.x, 1.0);
     let both = text.replace("reference =", "reference_point = [0, 0, 1]\nreference =");
     let error = read_toml(&both).unwrap_err().to_string();
     assert!(error.contains("'tip' is a frame"), "{error}");

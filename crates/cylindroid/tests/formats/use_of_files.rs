@@ -27,10 +27,10 @@ fn exercise(robot: &Mechanism) {
     assert!(robot.home().iter().all(|x| x.is_finite()));
     let state = robot.state(robot.home()).unwrap();
     let tool = robot.tool();
-    let pose = state.pose(tool);
+    let pose = state.pose(tool).unwrap();
     assert!(pose.translation.is_finite(), "{pose:?}");
     let moved = robot.integrate(robot.home(), &vec![0.1; robot.n()], 0.1).unwrap();
-    assert!(robot.state(&moved).unwrap().pose(tool).translation.is_finite());
+    assert!(robot.state(&moved).unwrap().pose(tool).unwrap().translation.is_finite());
     let _ = cylindroid::ik::Analytic::of(robot, tool);
     let options = CollisionOptions { samples: 0, ..CollisionOptions::default() };
     if let Ok(mut model) = CollisionModel::new(robot, &options) {

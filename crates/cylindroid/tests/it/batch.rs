@@ -95,7 +95,7 @@ fn draw(robot: &Mechanism, count: usize, seed: u64) -> Vec<f64> {
 #[test]
 fn agrees_with_single_calls() {
     for (robot, of) in robots() {
-        let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, of));
+        let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, of).unwrap());
         let scale = 1e-13 * (1.0 + robot.reach());
         // Whole blocks of lanes, and what is left over.
         for count in [1, 3, 4, 8, 13] {
@@ -110,9 +110,9 @@ fn agrees_with_single_calls() {
                 for i in 0..count {
                     let state = robot.state(&q[i * n..(i + 1) * n]).unwrap();
                     let what = format!("{} {reference:?} of {i} of {count}", robot.name());
-                    let rows = state.pose(of).to_matrix();
+                    let rows = state.pose(of).unwrap().to_matrix();
                     assert_close(&what, &poses[i * 16..(i + 1) * 16], rows.as_flattened(), scale);
-                    let j = state.jacobian(of, reference);
+                    let j = state.jacobian(of, reference).unwrap();
                     let j: Vec<f64> = (0..6 * n).map(|k| j[(k / n, k % n)]).collect();
                     assert_close(&what, &jacobians[i * 6 * n..(i + 1) * 6 * n], &j, scale);
                 }
@@ -125,16 +125,16 @@ fn agrees_with_single_calls() {
 #[test]
 fn chains_agree_with_trees() {
     for (robot, of) in robots() {
-        let mut chain = Chain::new(&robot, of);
+        let mut chain = Chain::new(&robot, of).unwrap();
         let mut local = Matrix::zeros(6, chain.n());
         for q in draw(&robot, 20, 6).chunks(robot.n()) {
             let state = robot.state(q).unwrap();
-            let (a, b) = (chain.set(q).to_matrix(), state.pose(of).to_matrix());
+            let (a, b) = (chain.set(q).to_matrix(), state.pose(of).unwrap().to_matrix());
             let scale = 1e-13 * (1.0 + robot.reach());
             assert_close(robot.name(), a.as_flattened(), b.as_flattened(), scale);
             for reference in REFERENCES {
                 chain.jacobian_into(reference, &mut local);
-                let whole = state.jacobian(of, reference);
+                let whole = state.jacobian(of, reference).unwrap();
                 for (k, &c) in chain.coordinates().iter().enumerate() {
                     assert_close(robot.name(), local.column(k), whole.column(c), scale);
                 }
@@ -161,7 +161,8 @@ fn rounds_as_single_calls() {
     let mut random = Random(13);
     for robot in robots {
         let (n, of) = (robot.n(), robot.tool());
-        let (batch, mut chain) = (KinematicsBatch::new(&robot, of), Chain::new(&robot, of));
+        let (batch, mut chain) =
+            (KinematicsBatch::new(&robot, of).unwrap(), Chain::new(&robot, of).unwrap());
         if chain.n() != n {
             continue;
         }
@@ -186,14 +187,15 @@ fn rounds_as_single_calls() {
 fn a_million_rows_are_those_of_single_calls() {
     let of_arm = |name: &&str| {
         let robot = catalogue::load(name).unwrap();
-        Chain::new(&robot, robot.tool()).n() == robot.n() && robot.n() > 0
+        Chain::new(&robot, robot.tool()).unwrap().n() == robot.n() && robot.n() > 0
     };
     let names: Vec<&str> = catalogue::names().iter().copied().filter(of_arm).collect();
     let count = 1_000_000_usize.div_ceil(names.len());
     for name in &names {
         let robot = catalogue::load(name).unwrap();
         let (n, of) = (robot.n(), robot.tool());
-        let (batch, mut chain) = (KinematicsBatch::new(&robot, of), Chain::new(&robot, of));
+        let (batch, mut chain) =
+            (KinematicsBatch::new(&robot, of).unwrap(), Chain::new(&robot, of).unwrap());
         let q = draw(&robot, count, 14);
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -227,7 +229,7 @@ fn a_million_rows_are_those_of_single_calls() {
 #[test]
 fn does_not_depend_on_threads_or_places() {
     let robot = catalogue::load("panda").unwrap();
-    let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, robot.tool()));
+    let (n, batch) = (robot.n(), KinematicsBatch::new(&robot, robot.tool()).unwrap());
     let count = 10_001;
     let q = draw(&robot, count, 7);
     let of = |threads: usize| {
@@ -245,7 +247,7 @@ fn does_not_depend_on_threads_or_places() {
 #[test]
 fn refuses_what_does_not_fit() {
     let robot = catalogue::load("panda").unwrap();
-    let batch = KinematicsBatch::new(&robot, robot.tool());
+    let batch = KinematicsBatch::new(&robot, robot.tool()).unwrap();
     assert!(batch.poses(&[]).unwrap().is_empty());
     let error = batch.poses(&[0.0; 15]).unwrap_err().to_string();
     assert_eq!(error, "q has 15 entries, expected 21 (7 for each configuration)");
@@ -266,7 +268,7 @@ fn nothing_moves() {
     let mut b = Mechanism::builder("table");
     b.joint(JointSpec::new("bolt", JointKind::Fixed, "floor", "table"));
     let table = b.build().unwrap();
-    let batch = KinematicsBatch::new(&table, table.tool());
+    let batch = KinematicsBatch::new(&table, table.tool()).unwrap();
     assert!(batch.poses(&[]).unwrap().is_empty());
     assert!(batch.poses(&[1.0]).is_err());
 }
@@ -275,7 +277,7 @@ fn nothing_moves() {
 #[test]
 fn the_ground_does_not_move() {
     let robot = catalogue::load("panda").unwrap();
-    let batch = KinematicsBatch::new(&robot, robot.frame(&robot.links()[0].name).unwrap());
+    let batch = KinematicsBatch::new(&robot, robot.frame(&robot.links()[0].name).unwrap()).unwrap();
     let q = draw(&robot, 3, 8);
     assert!(batch.jacobians(&q, ReferenceFrame::World).unwrap().iter().all(|x| *x == 0.0));
     let identity = Pose::IDENTITY.to_matrix();

@@ -9,7 +9,8 @@ use crate::support::Random;
 fn assert_alike(full: &Mechanism, q: &[f64], reduced: &Mechanism, p: &[f64], place: &str) {
     let (full_state, own) = (full.state(q).unwrap(), reduced.state(p).unwrap());
     for frame in full.frames() {
-        let pose = |m: &Mechanism, s: &cylindroid::State| s.pose(m.frame(&frame.name).unwrap());
+        let pose =
+            |m: &Mechanism, s: &cylindroid::State| s.pose(m.frame(&frame.name).unwrap()).unwrap();
         let way = pose(full, &full_state).error_to(pose(reduced, &own));
         let (linear, angular) = (way.linear.norm(), way.angular.norm());
         assert!(linear + angular < 1e-12 * (1.0 + full.reach()), "{place} {}", frame.name);
@@ -43,7 +44,7 @@ fn the_other_joints_move_frames_as_before() {
             let p: Vec<f64> = keep.iter().map(|&i| other[i]).collect();
             assert_alike(&robot, &other, &reduced, &p, &place);
             let jacobian = |m: &Mechanism, q: &[f64]| {
-                m.state(q).unwrap().jacobian(m.tool(), ReferenceFrame::LocalWorldAligned)
+                m.state(q).unwrap().jacobian(m.tool(), ReferenceFrame::LocalWorldAligned).unwrap()
             };
             let (own, full) = (jacobian(&reduced, &p), jacobian(&robot, &other));
             for (column, &i) in keep.iter().enumerate() {

@@ -126,7 +126,7 @@ fn motion_is_that_of_the_kinematics() {
         let m = b.build().unwrap();
         let q: Vec<f64> = (0..m.n()).map(|_| random.vec3(1.0).x).collect();
         let state = m.state(&q).unwrap();
-        let link = state.pose(m.frame("link").unwrap());
+        let link = state.pose(m.frame("link").unwrap()).unwrap();
         let motion = kind.transform(axis, &q);
         let motion = if reversed { motion.inverse() } else { motion };
         let expected = parent_from_joint * motion * joint_from_child;
@@ -253,10 +253,10 @@ fn an_included_mechanism_keeps_its_kinematics() {
     assert_eq!(m.home()[1..], q);
     let mut at = q.clone();
     at.insert(0, 0.25);
-    let tool = m.state(&at).unwrap().pose(m.frame("arm/tool0").unwrap());
+    let tool = m.state(&at).unwrap().pose(m.frame("arm/tool0").unwrap()).unwrap();
     let expected = Pose::from_translation(Vec3::Z * 0.25)
         * parent_from_root
-        * alone.state(&q).unwrap().pose(alone.tool());
+        * alone.state(&q).unwrap().pose(alone.tool()).unwrap();
     let error = expected.error_to(tool);
     assert!(error.linear.norm() < 1e-14 && error.angular.norm() < 1e-14);
     let wrong = Inclusion { start: &[0.0], ..how };

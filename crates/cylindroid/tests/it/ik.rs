@@ -21,7 +21,7 @@ fn checked(robot: &Mechanism, goals: &[Goal], options: &IkOptions, found: &Solut
         let Objective::Frame { end_effector, components: task, target } = goal.objective else {
             panic!("{goal:?}")
         };
-        let pose = state.pose(end_effector);
+        let pose = state.pose(end_effector).unwrap();
         let error = pose.error_to(target);
         let seen = |v: Vec3| match task.axes {
             ReferenceFrame::Local => pose.rotation.inverse() * v,
@@ -54,7 +54,7 @@ fn reachable_poses_are_reached() {
                 ..IkOptions::default()
             };
             for _ in 0..200 {
-                let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool());
+                let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool()).unwrap();
                 options.initial_guess = Some(random.q(&robot));
                 let goals = [Goal::pose(robot.tool(), target)];
                 let found = solve(&robot, &goals, &options).unwrap();
@@ -82,7 +82,7 @@ fn singular_and_extreme_poses_are_reached() {
             if robot.outside_limits(&q).next().is_some() {
                 continue;
             }
-            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let goals = [Goal::pose(robot.tool(), target)];
             let start: Vec<f64> = q.iter().map(|x| x + 0.4).collect();
             let options = IkOptions { initial_guess: Some(start), ..IkOptions::default() };
@@ -101,12 +101,12 @@ fn parts_of_poses() {
     let options = IkOptions::default();
     for task in [Task::POSITION, Task::ORIENTATION, Task::POINTING] {
         for _ in 0..50 {
-            let target = panda.state(&random.q(&panda)).unwrap().pose(panda.tool());
+            let target = panda.state(&random.q(&panda)).unwrap().pose(panda.tool()).unwrap();
             let goals = [Goal::frame(panda.tool(), task, target)];
             let found = solve(&panda, &goals, &options).unwrap();
             assert!(found.success, "{task:?}");
             checked(&panda, &goals, &options, &found);
-            let pose = panda.state(&found.q).unwrap().pose(panda.tool());
+            let pose = panda.state(&found.q).unwrap().pose(panda.tool()).unwrap();
             if task == Task::POINTING {
                 let z = |p: Pose| p.rotation.matrix().cols[2];
                 assert!((z(pose) - z(target)).norm() < 1e-5, "{pose:?}");
@@ -138,7 +138,7 @@ base = { xyz = [0.0, 1.0, 0.0] }
     let options = IkOptions::default();
     for _ in 0..30 {
         let state = pair.state(&random.q(&pair)).unwrap();
-        let goals = tools.map(|tool| Goal::pose(tool, state.pose(tool)));
+        let goals = tools.map(|tool| Goal::pose(tool, state.pose(tool).unwrap()));
         let found = solve(&pair, &goals, &options).unwrap();
         checked(&pair, &goals, &options, &found);
         assert!(found.success);
@@ -149,7 +149,7 @@ base = { xyz = [0.0, 1.0, 0.0] }
         let state = panda.state(&random.q(&panda)).unwrap();
         let goals = ["link4", "hand_tcp"].map(|name| {
             let frame = panda.frame(name).unwrap();
-            Goal::frame(frame, Task::POSITION, state.pose(frame))
+            Goal::frame(frame, Task::POSITION, state.pose(frame).unwrap())
         });
         let found = solve(&panda, &goals, &options).unwrap();
         checked(&panda, &goals, &options, &found);
@@ -162,7 +162,7 @@ base = { xyz = [0.0, 1.0, 0.0] }
 #[test]
 fn out_of_reach_ends_with_the_nearest_pose() {
     let panda = catalogue::load("panda").unwrap();
-    let mut target = panda.state(panda.home()).unwrap().pose(panda.tool());
+    let mut target = panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap();
     target.translation = Vec3::new(1.4, 0.5, 0.6);
     let goals = [Goal::frame(panda.tool(), Task::POSITION, target)];
     let options = IkOptions::default();
@@ -171,7 +171,8 @@ fn out_of_reach_ends_with_the_nearest_pose() {
     let (distance, length) = found.out_of_reach.unwrap();
     assert!(!found.success && distance > length && found.iterations < 20_000);
     let far = |q: &[f64]| {
-        (panda.state(q).unwrap().pose(panda.tool()).translation - target.translation).norm()
+        (panda.state(q).unwrap().pose(panda.tool()).unwrap().translation - target.translation)
+            .norm()
     };
     for i in 0..panda.n() {
         for step in [-1e-3, 1e-3] {
@@ -200,7 +201,10 @@ fn the_nearest_answer() {
         for _ in 0..40 {
             let known = random.q(&robot);
             let start: Vec<f64> = known.iter().map(|x| x + random.within(-0.5, 0.5)).collect();
-            let goals = [Goal::pose(robot.tool(), robot.state(&known).unwrap().pose(robot.tool()))];
+            let goals = [Goal::pose(
+                robot.tool(),
+                robot.state(&known).unwrap().pose(robot.tool()).unwrap(),
+            )];
             let options = IkOptions {
                 initial_guess: Some(start.clone()),
                 nearest: true,
@@ -224,7 +228,7 @@ fn the_nearest_answer() {
 fn several_answers() {
     let ur5e = catalogue::load("ur5e").unwrap();
     let q = [0.3, -1.1, 1.4, 0.2, 1.0, 0.4];
-    let goals = [Goal::pose(ur5e.tool(), ur5e.state(&q).unwrap().pose(ur5e.tool()))];
+    let goals = [Goal::pose(ur5e.tool(), ur5e.state(&q).unwrap().pose(ur5e.tool()).unwrap())];
     let options = IkOptions { initial_guess: Some(q.to_vec()), ..IkOptions::default() };
     let found = solve_distinct(&ur5e, &goals, &options, 20).unwrap();
     assert_eq!(found.len(), 8);
@@ -252,7 +256,7 @@ limits = { lower = 0.0, upper = 1.0 }
 "#;
     let robot = from_text(text);
     let hand = robot.frame("hand").unwrap();
-    let mut target = robot.state(&[1.0]).unwrap().pose(hand);
+    let mut target = robot.state(&[1.0]).unwrap().pose(hand).unwrap();
     let options = IkOptions { position_tolerance: 1e-6, ..IkOptions::default() };
     target.translation.x += 5e-7;
     let found = solve(&robot, &[Goal::pose(hand, target)], &options).unwrap();
@@ -283,7 +287,7 @@ limits = { lower = -13.0, upper = 13.0 }
     let screw = of("type = \"helical\"\npitch = 0.01");
     for (robot, answers) in [(hinge, 1), (screw, 4)] {
         let hand = robot.frame("hand").unwrap();
-        let target = robot.state(&[0.5]).unwrap().pose(hand);
+        let target = robot.state(&[0.5]).unwrap().pose(hand).unwrap();
         let goals = [Goal::frame(hand, Task::ORIENTATION, target)];
         let found = solve_distinct(&robot, &goals, &IkOptions::default(), 4).unwrap();
         assert_eq!(found.len(), answers, "{}: {found:?}", robot.name());
@@ -318,7 +322,7 @@ origin = [0.0, 0.0, 0.9]
     let mut random = Random(65);
     for _ in 0..50 {
         let q: Vec<f64> = (0..robot.n()).map(|_| random.within(-1.5, 1.5)).collect();
-        let goals = [Goal::pose(hand, robot.state(&q).unwrap().pose(hand))];
+        let goals = [Goal::pose(hand, robot.state(&q).unwrap().pose(hand).unwrap())];
         let options = IkOptions::default();
         let found = solve(&robot, &goals, &options).unwrap();
         checked(&robot, &goals, &options, &found);
@@ -331,7 +335,7 @@ origin = [0.0, 0.0, 0.9]
 fn the_nearest_answer_does_not_unwind() {
     let ur5e = catalogue::load("ur5e").unwrap();
     let start = vec![0.3, -1.1, 1.4, 0.2, 1.0, 5.9];
-    let mut target = ur5e.state(&start).unwrap().pose(ur5e.tool());
+    let mut target = ur5e.state(&start).unwrap().pose(ur5e.tool()).unwrap();
     target.translation.z += 0.01;
     let options =
         IkOptions { initial_guess: Some(start.clone()), nearest: true, ..IkOptions::default() };
@@ -373,7 +377,7 @@ fn bad_requests_are_named() {
     assert!(error.contains("one frame"), "{error}");
     // A frame that nothing moves: reached where it is, else not.
     let base = panda.frame("base").unwrap();
-    let here = panda.state(panda.home()).unwrap().pose(base);
+    let here = panda.state(panda.home()).unwrap().pose(base).unwrap();
     assert!(solve(&panda, &[Goal::pose(base, here)], &options).unwrap().success);
     let there = Pose::from_translation(Vec3::new(1.0, 0.0, 0.0));
     assert!(!solve(&panda, &[Goal::pose(base, there)], &options).unwrap().success);
@@ -440,7 +444,7 @@ fn other_joints_are_within_their_limits() {
         limits = { lower = 0.5, upper = 1.0 }
         "#,
     );
-    let pose = robot.state(&[0.3, 0.7]).unwrap().pose(robot.tool());
+    let pose = robot.state(&[0.3, 0.7]).unwrap().pose(robot.tool()).unwrap();
     let found = solve(&robot, &[Goal::pose(robot.tool(), pose)], &IkOptions::default()).unwrap();
     assert!(found.success && robot.outside_limits(&found.q).next().is_none(), "{found:?}");
 }
@@ -471,7 +475,7 @@ fn full_turns_leave_slides_and_limits_alone() {
             "#
         );
         let robot = from_text(&text);
-        let target = robot.state(&[1.0, -2.3]).unwrap().pose(robot.tool());
+        let target = robot.state(&[1.0, -2.3]).unwrap().pose(robot.tool()).unwrap();
         let initial_guess = Some(vec![9.0, 3.8]);
         let options = IkOptions { initial_guess, nearest: true, ..IkOptions::default() };
         let found = solve(&robot, &[Goal::pose(robot.tool(), target)], &options).unwrap();

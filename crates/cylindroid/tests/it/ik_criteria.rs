@@ -22,7 +22,7 @@ fn manipulability(robot: &Mechanism, components: Task) -> Criterion {
 /// The product of the singular values, from the Jacobian of the state.
 fn yoshikawa(robot: &Mechanism, q: &[f64], components: Task) -> f64 {
     let state = robot.state(q).unwrap();
-    let mut j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    let mut j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
     for column in 0..j.cols() {
         for row in 0..3 {
             j[(row, column)] /= robot.reach();
@@ -61,7 +61,8 @@ fn none_is_better() {
         let robot = catalogue::load(name).unwrap();
         for _ in 0..4 {
             let q = random.q(&robot);
-            let goals = [Goal::pose(robot.tool(), robot.state(&q).unwrap().pose(robot.tool()))];
+            let goals =
+                [Goal::pose(robot.tool(), robot.state(&q).unwrap().pose(robot.tool()).unwrap())];
             let best = solve(&robot, &goals, &with(manipulability(&robot, Task::POSE))).unwrap();
             reached(&best);
             let margin = 0.4;
@@ -164,7 +165,8 @@ fn the_best_of_three_links() {
 fn with_other_options() {
     let panda = catalogue::load("panda").unwrap();
     let criterion = manipulability(&panda, Task::POSE);
-    let goals = [Goal::pose(panda.tool(), panda.state(panda.home()).unwrap().pose(panda.tool()))];
+    let goals =
+        [Goal::pose(panda.tool(), panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap())];
     let found = solve_distinct(&panda, &goals, &with(criterion), 100).unwrap();
     assert!(found.len() > 1);
     assert!(found.windows(2).all(|pair| pair[0].criterion >= pair[1].criterion));
@@ -174,20 +176,21 @@ fn with_other_options() {
     assert_eq!(kept.q[2], panda.home()[2]);
     assert!(kept.criterion <= found[0].criterion);
     let elbow = panda.frame("link4").unwrap();
-    let point = panda.state(&found[0].q).unwrap().pose(elbow).translation - Vec3::Z * 0.02;
+    let point = panda.state(&found[0].q).unwrap().pose(elbow).unwrap().translation - Vec3::Z * 0.02;
     let below =
         HalfSpace { name: "below".to_owned(), end_effector: elbow.into(), point, normal: -Vec3::Z };
     let options = IkOptions { half_spaces: vec![below], ..with(criterion) };
     let bounded = solve(&panda, &goals, &options).unwrap();
     reached(&bounded);
-    let height = panda.state(&bounded.q).unwrap().pose(elbow).translation.z;
+    let height = panda.state(&bounded.q).unwrap().pose(elbow).unwrap().translation.z;
     assert!(height <= point.z + 1e-6 && bounded.criterion < found[0].criterion, "{bounded:?}");
 }
 
 #[test]
 fn what_contradicts_a_criterion_is_named() {
     let panda = catalogue::load("panda").unwrap();
-    let goals = [Goal::pose(panda.tool(), panda.state(panda.home()).unwrap().pose(panda.tool()))];
+    let goals =
+        [Goal::pose(panda.tool(), panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap())];
     let error = |options: &IkOptions| solve(&panda, &goals, options).unwrap_err().to_string();
     let criterion = Criterion::LimitAvoidance { margin: 0.2 };
     assert!(error(&IkOptions { nearest: true, ..with(criterion) }).contains("nearest"));
@@ -198,7 +201,7 @@ fn what_contradicts_a_criterion_is_named() {
         assert!(told.contains("share of the range"), "{told}");
     }
     let stewart = catalogue::load("stewart").unwrap();
-    let pose = stewart.state(stewart.home()).unwrap().pose(stewart.tool());
+    let pose = stewart.state(stewart.home()).unwrap().pose(stewart.tool()).unwrap();
     let told = solve(&stewart, &[Goal::pose(stewart.tool(), pose)], &with(criterion));
     assert!(told.unwrap_err().to_string().contains("criterion"));
 }

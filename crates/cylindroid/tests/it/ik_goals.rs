@@ -26,10 +26,10 @@ fn errors(goal: &Goal, state: &State) -> (f64, f64) {
     let of = |error: cylindroid::Twist| (error.linear.norm(), error.angular.norm());
     match goal.objective {
         Objective::Frame { end_effector, components, target } => {
-            of(components.error(state.pose(end_effector), target))
+            of(components.error(state.pose(end_effector).unwrap(), target))
         }
         Objective::RelativeFrame { end_effector, reference, components, target } => {
-            let seen = state.pose(reference).inverse() * state.pose(end_effector);
+            let seen = state.pose(reference).unwrap().inverse() * state.pose(end_effector).unwrap();
             of(components.error(seen, target))
         }
         Objective::CenterOfMass { axes, target } => {
@@ -38,7 +38,7 @@ fn errors(goal: &Goal, state: &State) -> (f64, f64) {
             (squares.sum::<f64>().sqrt(), 0.0)
         }
         Objective::Gaze { end_effector, point } => {
-            let pose = state.pose(end_effector);
+            let pose = state.pose(end_effector).unwrap();
             let (z, way) = (pose.rotation.z_axis(), point - pose.translation);
             (0.0, z.cross(way).norm().atan2(z.dot(way)))
         }
@@ -66,7 +66,7 @@ fn goals_at(robot: &Mechanism, q: &[f64], distance: f64) -> [Goal; 5] {
     let state = robot.state(q).unwrap();
     let [left, right, head] =
         ["left_6_link", "right_6_link", "pan_link"].map(|name| robot.frame(name).unwrap());
-    let [a, b, c] = [left, right, head].map(|frame| state.pose(frame));
+    let [a, b, c] = [left, right, head].map(|frame| state.pose(frame).unwrap());
     let center = Objective::CenterOfMass { axes: [true, true, false], target: center(&state) };
     [
         Goal::frame(left, Task::POSITION, a),
@@ -107,7 +107,7 @@ fn gaze_looks_everywhere() {
     let panda = catalogue::load("panda").unwrap();
     let (mut random, options) = (Random(6), IkOptions::default());
     for round in 0..50 {
-        let hand = panda.state(panda.home()).unwrap().pose(panda.tool());
+        let hand = panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap();
         let point = if round == 0 { hand * (Vec3::Z * -0.4) } else { random.vec3(2.0) };
         let goals = [Goal::gaze(panda.tool(), point)];
         let found = solve(&panda, &goals, &options).unwrap();
@@ -115,7 +115,7 @@ fn gaze_looks_everywhere() {
         assert!(found.success, "{point:?}: {found:?}");
     }
     // A point at the eye is looked at in every direction.
-    let eye = panda.state(panda.home()).unwrap().pose(panda.tool()).translation;
+    let eye = panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap().translation;
     let goals = [Goal::gaze(panda.tool(), eye)];
     assert_eq!(solve(&panda, &goals, &options).unwrap().q, panda.home());
 }
@@ -230,7 +230,7 @@ fn postures_are_approached() {
     let mut random = Random(12);
     let panda = catalogue::load("panda").unwrap();
     for _ in 0..40 {
-        let target = panda.state(&random.q(&panda)).unwrap().pose(panda.tool());
+        let target = panda.state(&random.q(&panda)).unwrap().pose(panda.tool()).unwrap();
         let goals = [Goal::pose(panda.tool(), target)];
         let (posture, start) = (random.q(&panda), random.q(&panda));
         let nearest = |initial_guess, posture| {
@@ -330,7 +330,7 @@ fn goals_are_reached_alike_on_any_foundation_and_in_any_order() {
     let there = panda.state(&[0.4, 0.2, 0.1, -1.8, 0.2, 1.7, 0.4]).unwrap();
     let solved = |robot: &Mechanism, foundation: Pose, reversed: bool| {
         let frame = |name: &str| robot.frame(name).unwrap();
-        let own = |name: &str| there.pose(panda.frame(name).unwrap());
+        let own = |name: &str| there.pose(panda.frame(name).unwrap()).unwrap();
         let point = foundation * (own("flange") * (Vec3::Z * 0.7));
         let apart = own("link4").inverse() * own("flange");
         let mut goals = vec![

@@ -16,7 +16,7 @@ fn room(robot: &Mechanism, half_spaces: &[HalfSpace], q: &[f64]) -> f64 {
     let state = robot.state(q).unwrap();
     let rooms = half_spaces.iter().map(|h| {
         let inwards = h.normal * h.normal.norm().recip();
-        inwards.dot(state.pose(h.end_effector).translation - h.point)
+        inwards.dot(state.pose(h.end_effector).unwrap().translation - h.point)
     });
     rooms.fold(f64::INFINITY, f64::min)
 }
@@ -34,9 +34,9 @@ fn solutions_lie_inside() {
             let q = random.q(&panda);
             let state = panda.state(&q).unwrap();
             let normal = random.vec3(1.0);
-            let inside = state.pose(elbow).translation - normal * (0.02 / normal.norm());
+            let inside = state.pose(elbow).unwrap().translation - normal * (0.02 / normal.norm());
             let half_spaces = vec![plane("elbow", elbow, inside, normal)];
-            let goals = [Goal::frame(tool, task, state.pose(tool))];
+            let goals = [Goal::frame(tool, task, state.pose(tool).unwrap())];
             let free = solve(&panda, &goals, &IkOptions::default()).unwrap();
             outside += usize::from(room(&panda, &half_spaces, &free.q) < 0.0);
             let options = IkOptions { half_spaces, ..IkOptions::default() };
@@ -56,7 +56,7 @@ fn solutions_lie_inside() {
 fn closed_forms_are_filtered() {
     let ur5e = catalogue::load("ur5e").unwrap();
     let elbow = ur5e.frame("link3").unwrap();
-    let target = ur5e.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4]).unwrap().pose(ur5e.tool());
+    let target = ur5e.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4]).unwrap().pose(ur5e.tool()).unwrap();
     let goals = [Goal::pose(ur5e.tool(), target)];
     let mut all = Solver::new(&ur5e, &goals, &IkOptions::default()).unwrap();
     let all = all.solve_distinct(&goals, 8).unwrap();
@@ -78,11 +78,11 @@ fn boxes_hold_hands() {
         let q: Vec<f64> = (0..robot.n()).map(|_| random.within(-1.2, 1.2)).collect();
         let state = robot.state(&q).unwrap();
         let height = Task::named("z", &robot).unwrap();
-        let goals = [Goal::frame(left, height, state.pose(left))];
-        let center = Pose { rotation: random.rotation(), ..state.pose(left) };
+        let goals = [Goal::frame(left, height, state.pose(left).unwrap())];
+        let center = Pose { rotation: random.rotation(), ..state.pose(left).unwrap() };
         let mut half_spaces =
             HalfSpace::inside_box("box", left.into(), center, Vec3::new(0.2, 0.1, 0.3)).to_vec();
-        half_spaces.push(plane("right", right, state.pose(right).translation, Vec3::Y));
+        half_spaces.push(plane("right", right, state.pose(right).unwrap().translation, Vec3::Y));
         let options = IkOptions { half_spaces, ..IkOptions::default() };
         let found = solve(&robot, &goals, &options).unwrap();
         assert!(found.success, "{found:?}");
@@ -101,9 +101,10 @@ fn closest_solutions_inside() {
     for _ in 0..30 {
         let q = random.q(&panda);
         let state = panda.state(&q).unwrap();
-        let goals = [Goal::pose(panda.tool(), state.pose(panda.tool()))];
+        let goals = [Goal::pose(panda.tool(), state.pose(panda.tool()).unwrap())];
         let normal = random.vec3(1.0);
-        let half_spaces = vec![plane("elbow", elbow, state.pose(elbow).translation, normal)];
+        let half_spaces =
+            vec![plane("elbow", elbow, state.pose(elbow).unwrap().translation, normal)];
         let start = random.q(&panda);
         let options =
             IkOptions { nearest: true, initial_guess: Some(start.clone()), ..IkOptions::default() };
@@ -135,7 +136,7 @@ fn closest_solutions_inside() {
 #[test]
 fn misses_name_the_half_space() {
     let panda = catalogue::load("panda").unwrap();
-    let hand = panda.state(panda.home()).unwrap().pose(panda.tool());
+    let hand = panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap();
     let goals = [Goal::pose(panda.tool(), hand)];
     let wall = plane("wall", panda.tool(), hand.translation + Vec3::X * 0.05, Vec3::X);
     let floor = plane("floor", panda.tool(), Vec3::ZERO, Vec3::Z);

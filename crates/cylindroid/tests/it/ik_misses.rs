@@ -44,8 +44,8 @@ fn solutions_keep_the_gap() {
         for _ in 0..30 {
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
-            let goals = [Goal::pose(robot.tool(), state.pose(robot.tool()))];
-            let elbow = state.pose(robot.frame("link4").unwrap()).translation;
+            let goals = [Goal::pose(robot.tool(), state.pose(robot.tool()).unwrap())];
+            let elbow = state.pose(robot.frame("link4").unwrap()).unwrap().translation;
             let away = Vec3::new(0.03, 0.02, -0.01);
             let model = among(&robot, &[(0.05, elbow + away)]);
             let options =
@@ -77,7 +77,7 @@ fn solutions_keep_the_gap() {
 #[test]
 fn a_body_at_the_target_is_named() {
     let robot = panda();
-    let target = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let target = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let goals = [Goal::pose(robot.tool(), target)];
     let mut solver = Solver::new(&robot, &goals, &IkOptions::default()).unwrap();
     solver.avoid(among(&robot, &[(0.1, target.translation)]), 0.0).unwrap();
@@ -149,7 +149,7 @@ fn named_limits_are_those_to_widen() {
     let (mut limited, mut confirmed) = (0, 0);
     for _ in 0..40 {
         let q: Vec<f64> = (0..7).map(|_| random.within(-2.5, 2.5)).collect();
-        let target = free.state(&q).unwrap().pose(free.tool());
+        let target = free.state(&q).unwrap().pose(free.tool()).unwrap();
         let goals = [Goal::pose(narrow.tool(), target)];
         let found = solve(&narrow, &goals, &IkOptions::default()).unwrap();
         assert_eq!(found.success, found.reason.is_none());

@@ -42,7 +42,7 @@ fn wide_limits_stand_for_none() {
     let mut options = IkOptions::default();
     options.budget.iterations = 500;
     for round in 0..100 {
-        let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool());
+        let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool()).unwrap();
         let found = solve(&robot, &[Goal::pose(robot.tool(), target)], &options).unwrap();
         assert!(found.success, "{round}: {found:?}");
         assert_eq!(robot.outside_limits(&found.q).next(), None);

@@ -46,7 +46,7 @@ fn joint_twists_are_the_columns_of_all_jacobians() {
         state.joint_twists_into(&mut twists);
         for joint in robot.joints().iter().filter(|j| j.mimic.is_none()) {
             let link = robot.frame(&robot.links()[joint.child].name).unwrap();
-            let jacobian = state.jacobian(link, ReferenceFrame::World);
+            let jacobian = state.jacobian(link, ReferenceFrame::World).unwrap();
             for c in 0..robot.n() {
                 let follows = |c| {
                     robot.joints().iter().any(|j| j.mimic.is_some() && j.coordinates.contains(&c))
@@ -71,9 +71,9 @@ fn jacobian_by_finite_differences() {
         for _ in 0..5 {
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
-            let pose = state.pose(tool);
+            let pose = state.pose(tool).unwrap();
             let pose_at = |rates: &[f64], h: f64| {
-                robot.state(&moved(&robot, &q, rates, h)).unwrap().pose(tool)
+                robot.state(&moved(&robot, &q, rates, h)).unwrap().pose(tool).unwrap()
             };
             for k in 0..robot.n() {
                 let e = unit(robot.n(), k);
@@ -87,7 +87,7 @@ fn jacobian_by_finite_differences() {
                         ReferenceFrame::LocalWorldAligned => spatial.at_point(pose.translation),
                         ReferenceFrame::Local => pose.inverse().adjoint(spatial),
                     };
-                    let j = state.jacobian(tool, reference);
+                    let j = state.jacobian(tool, reference).unwrap();
                     let what = format!("{} {} column {k}", robot.name(), reference.name());
                     assert_close(&what, j.column(k), &expected.to_array(), scale);
                 }
@@ -105,8 +105,8 @@ fn references_are_related_by_the_adjoint() {
         let q = random.q(&robot);
         let rates = random.vector(robot.n());
         let state = robot.state(&q).unwrap();
-        let pose = state.pose(tool);
-        let [local, world, aligned] = REFERENCES.map(|r| state.jacobian(tool, r));
+        let pose = state.pose(tool).unwrap();
+        let [local, world, aligned] = REFERENCES.map(|r| state.jacobian(tool, r).unwrap());
         let scale = 1e-13 * (1.0 + robot.reach());
         assert_matrix("Ad J_local", &(&velocity_conversion(pose) * &local), &world, scale);
         let turned = Pose::from_rotation(pose.rotation);
@@ -127,11 +127,11 @@ fn jacobian_is_assembled_by_conversion() {
     for robot in crate::support::robots() {
         let q = random.q(&robot);
         let state = robot.state(&q).unwrap();
-        let world_from_tool = state.pose(robot.tool());
+        let world_from_tool = state.pose(robot.tool()).unwrap();
         let mut assembled = Matrix::zeros(6, robot.n());
         for joint in robot.joints().iter().filter(|j| j.kind.dof() == 1) {
             let world_from_child =
-                state.pose(robot.frame(&robot.links()[joint.child].name).unwrap());
+                state.pose(robot.frame(&robot.links()[joint.child].name).unwrap()).unwrap();
             let along_z = Pose::from_rotation(Rotation::z_to(joint.axis).unwrap());
             let tool_from_joint = world_from_tool.inverse() * world_from_child * along_z;
             let v = velocity_conversion(tool_from_joint);
@@ -140,7 +140,7 @@ fn jacobian_is_assembled_by_conversion() {
         }
         assert_matrix(
             robot.name(),
-            &state.jacobian(robot.tool(), ReferenceFrame::Local),
+            &state.jacobian(robot.tool(), ReferenceFrame::Local).unwrap(),
             &assembled,
             1e-14,
         );
@@ -159,7 +159,10 @@ fn jacobian_dot_by_finite_differences() {
             let at = |h: f64| robot.state(&moved(&robot, &q, &rates, h)).unwrap();
             let (plus, minus) = (at(h), at(-h));
             for reference in REFERENCES {
-                let (a, b) = (plus.jacobian(tool, reference), minus.jacobian(tool, reference));
+                let (a, b) = (
+                    plus.jacobian(tool, reference).unwrap(),
+                    minus.jacobian(tool, reference).unwrap(),
+                );
                 let difference =
                     Matrix::from_fn(6, robot.n(), |i, j| (a[(i, j)] - b[(i, j)]) * (0.5 / h));
                 let dot = state.jacobian_dot(&rates, tool, reference).unwrap();
@@ -181,13 +184,17 @@ fn hessian_by_finite_differences_and_sum() {
         let state = robot.state(&q).unwrap();
         let n = robot.n();
         for reference in REFERENCES {
-            let hessian = state.hessian(tool, reference);
+            let hessian = state.hessian(tool, reference).unwrap();
             assert_eq!(hessian.len(), n);
             let what = format!("{} {}", robot.name(), reference.name());
             for (k, exact) in hessian.iter().enumerate() {
                 let e = unit(n, k);
                 let at = |h: f64| {
-                    robot.state(&moved(&robot, &q, &e, h)).unwrap().jacobian(tool, reference)
+                    robot
+                        .state(&moved(&robot, &q, &e, h))
+                        .unwrap()
+                        .jacobian(tool, reference)
+                        .unwrap()
                 };
                 let (a, b) = (at(h), at(-h));
                 let difference = Matrix::from_fn(6, n, |i, j| (a[(i, j)] - b[(i, j)]) * (0.5 / h));
@@ -211,16 +218,16 @@ fn analytical_jacobians_by_finite_differences() {
         for _ in 0..20 {
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
-            let analytical = state.analytical_jacobian(robot.tool(), kind);
+            let analytical = state.analytical_jacobian(robot.tool(), kind).unwrap();
             if analytical.determinant.abs() < 0.2
                 || (kind == OrientationRates::RotationVector
-                    && state.pose(robot.tool()).rotation.log().norm() > 3.0)
+                    && state.pose(robot.tool()).unwrap().rotation.log().norm() > 3.0)
             {
                 continue;
             }
             assert!(analytical.exists);
             let coordinates = |q: &[f64]| {
-                let pose = robot.state(q).unwrap().pose(robot.tool());
+                let pose = robot.state(q).unwrap().pose(robot.tool()).unwrap();
                 let angles = match kind {
                     OrientationRates::Rpy => {
                         let a = Rpy::of(pose.rotation);
@@ -277,11 +284,11 @@ fn analytical_jacobian_at_gimbal_lock() {
     }
     let wrist = b.build().unwrap();
     let state = wrist.state(&[0.3, std::f64::consts::FRAC_PI_2, 0.2]).unwrap();
-    let a = state.analytical_jacobian(wrist.tool(), OrientationRates::Rpy);
+    let a = state.analytical_jacobian(wrist.tool(), OrientationRates::Rpy).unwrap();
     assert!(!a.exists && a.determinant.abs() < 1e-15 && a.matrix.is_finite());
     assert!(a.matrix.max_abs() < 2.0);
     let zyz = wrist.state(&[0.3, 0.0, 0.0]).unwrap();
-    assert!(!zyz.analytical_jacobian(wrist.tool(), OrientationRates::Zyz).exists);
+    assert!(!zyz.analytical_jacobian(wrist.tool(), OrientationRates::Zyz).unwrap().exists);
 }
 
 /// A chain is the part of the state that moves one frame.
@@ -296,14 +303,19 @@ fn chain_equals_state() {
             };
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
-            let mut chain = Chain::new(&robot, of);
+            let mut chain = Chain::new(&robot, of).unwrap();
             let pose = chain.set(&q);
             let scale = 1e-14 * (1.0 + robot.reach());
-            assert_close("pose", &pose_entries(pose), &pose_entries(state.pose(of)), scale);
+            assert_close(
+                "pose",
+                &pose_entries(pose),
+                &pose_entries(state.pose(of).unwrap()),
+                scale,
+            );
             let mut j = Matrix::zeros(6, chain.n());
             for reference in REFERENCES {
                 chain.jacobian_into(reference, &mut j);
-                let full = state.jacobian(of, reference);
+                let full = state.jacobian(of, reference).unwrap();
                 let mut rest = full.clone();
                 for (k, &c) in chain.coordinates().iter().enumerate() {
                     assert_close("column", j.column(k), full.column(c), scale);
@@ -338,8 +350,16 @@ fn mimic_joints_count_in_the_jacobian() {
     let q = 0.4;
     let (c, f) = (coupled.state(&[q]).unwrap(), free.state(&[q, 0.7 * q + 0.1]).unwrap());
     let tip = coupled.frame("tip").unwrap();
-    assert_close("pose", &pose_entries(c.pose(tip)), &pose_entries(f.pose(tip)), 1e-15);
-    let (jc, jf) = (c.jacobian(tip, ReferenceFrame::World), f.jacobian(tip, ReferenceFrame::World));
+    assert_close(
+        "pose",
+        &pose_entries(c.pose(tip).unwrap()),
+        &pose_entries(f.pose(tip).unwrap()),
+        1e-15,
+    );
+    let (jc, jf) = (
+        c.jacobian(tip, ReferenceFrame::World).unwrap(),
+        f.jacobian(tip, ReferenceFrame::World).unwrap(),
+    );
     let combined: Vec<f64> = (0..6).map(|i| jf[(i, 0)] + 0.7 * jf[(i, 1)]).collect();
     assert_close("column", jc.column(0), &combined, 1e-15);
 }
@@ -352,7 +372,7 @@ fn integrate_moves_free_and_spherical_joints_on_their_group() {
     let body = b.build().unwrap();
     let twist = Twist { linear: Vec3::new(0.3, -0.1, 0.2), angular: Vec3::new(1.0, -2.0, 0.5) };
     let q0 = [0.1, 0.2, 0.3, 0.5, -0.4, 0.9];
-    let start = body.state(&q0).unwrap().pose(body.tool());
+    let start = body.state(&q0).unwrap().pose(body.tool()).unwrap();
     let mut q = q0.to_vec();
     for _ in 0..1000 {
         q = body.integrate(&q, &twist.to_array(), 1e-3).unwrap();
@@ -360,11 +380,11 @@ fn integrate_moves_free_and_spherical_joints_on_their_group() {
     let expected = start * cylindroid::spatial::exp(twist);
     assert_close(
         "pose",
-        &pose_entries(body.state(&q).unwrap().pose(body.tool())),
+        &pose_entries(body.state(&q).unwrap().pose(body.tool()).unwrap()),
         &pose_entries(expected),
         1e-12,
     );
-    let j = body.state(&q).unwrap().jacobian(body.tool(), ReferenceFrame::Local);
+    let j = body.state(&q).unwrap().jacobian(body.tool(), ReferenceFrame::Local).unwrap();
     assert_matrix("J", &j, &Matrix::identity(6), 1e-14);
 }
 
@@ -377,12 +397,12 @@ fn bad_q_is_refused_by_name_and_leaves_the_state() {
         "{error}"
     );
     let mut state = robot.state(robot.home()).unwrap();
-    let before = state.pose(robot.tool());
+    let before = state.pose(robot.tool()).unwrap();
     let mut q = robot.home().to_vec();
     q[3] = f64::NAN;
     let error = state.set(&q).unwrap_err().to_string();
     assert!(error.contains(&robot.coordinates()[3].name) && error.contains("NaN"), "{error}");
-    assert_eq!(state.pose(robot.tool()), before);
+    assert_eq!(state.pose(robot.tool()).unwrap(), before);
     let error = robot.frame("hand_tpc").unwrap_err().to_string();
     assert!(error.contains("nearest: hand_tcp"), "{error}");
 }
@@ -395,7 +415,8 @@ fn screws_of_joints() {
     for robot in robots() {
         let q: Vec<f64> = (0..robot.n()).map(|_| random.within(-1.0, 1.0)).collect();
         let state = robot.state(&q).unwrap();
-        let pose = |link: usize| state.pose(robot.frame(&robot.links()[link].name).unwrap());
+        let pose =
+            |link: usize| state.pose(robot.frame(&robot.links()[link].name).unwrap()).unwrap();
         for (i, joint) in robot.joints().iter().enumerate() {
             let screws = state.joint_screws(i);
             assert_eq!(screws.len(), joint.coordinates.len(), "{}", joint.name);
@@ -435,7 +456,7 @@ fn screws_of_closing_joints() {
         let state = mechanism.state(mechanism.home()).unwrap();
         for (i, joint) in mechanism.loops().iter().enumerate() {
             let link = mechanism.frame(&mechanism.links()[joint.a].name).unwrap();
-            let frame = state.pose(link) * joint.link_a_from_joint;
+            let frame = state.pose(link).unwrap() * joint.link_a_from_joint;
             let screws = state.loop_screws(i);
             assert_eq!(screws.len(), joint.kind.dof(), "{}", joint.name);
             for wrench in joint.kind.constraint_wrenches(joint.axis, mechanism.dimension()) {

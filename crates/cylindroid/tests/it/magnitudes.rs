@@ -2,10 +2,12 @@
 //! other mechanisms are errors.
 
 use cylindroid::closure::{ModeOptions, frame_twists, operation_modes};
-use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch};
+use cylindroid::ik::{Analytic, NotSolvable};
+use cylindroid::kinematics::{Chain, KinematicsBatch, OrientationRates};
+use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch, body_inertia};
 use cylindroid::model::{JointKind, JointSpec, Limits};
 use cylindroid::tolerance::MAX_MAGNITUDE;
-use cylindroid::{Error, Mechanism, Pose, ReferenceFrame, Vec3, catalogue};
+use cylindroid::{Error, Matrix, Mechanism, Pose, ReferenceFrame, Vec3, catalogue};
 
 use crate::support::zoo;
 
@@ -30,8 +32,8 @@ fn kinematics_are_finite_up_to_the_range() {
         let q = vec![edge; robot.n()];
         let state = robot.state(&q).unwrap();
         for frame in robot.frame_ids() {
-            assert!(state.pose(frame).is_finite(), "{}", robot.name());
-            let jacobian = state.jacobian(frame, ReferenceFrame::World);
+            assert!(state.pose(frame).unwrap().is_finite(), "{}", robot.name());
+            let jacobian = state.jacobian(frame, ReferenceFrame::World).unwrap();
             assert!(jacobian.as_slice().iter().all(|x| x.is_finite()), "{}", robot.name());
         }
         let next = robot.integrate(&q, &q, 1e-3).unwrap();
@@ -77,7 +79,7 @@ fn numbers_beyond_the_range_are_refused_by_name() {
     assert!(message.contains("limit of joint 'turn' is 1.8e300"), "{message}");
 }
 
-/// What can return an error does.
+/// Every function that takes a frame of a state or a mechanism.
 #[test]
 fn frames_of_other_mechanisms_are_errors() {
     let [panda, ur5e, five_bar] =
@@ -88,6 +90,14 @@ fn frames_of_other_mechanisms_are_errors() {
     let messages = [
         state.twist(&[0.0; 7], foreign, local).unwrap_err(),
         state.jacobian_dot(&[0.0; 7], foreign, local).unwrap_err(),
+        state.pose(foreign).unwrap_err(),
+        state.jacobian(foreign, local).unwrap_err(),
+        state.jacobian_into(foreign, local, &mut Matrix::zeros(6, 7)).unwrap_err(),
+        state.hessian(foreign, local).unwrap_err(),
+        state.analytical_jacobian(foreign, OrientationRates::RotationVector).unwrap_err(),
+        Chain::new(&panda, foreign).unwrap_err(),
+        KinematicsBatch::new(&panda, foreign).unwrap_err(),
+        body_inertia(&state, foreign).unwrap_err(),
         frame_twists(&state, foreign).unwrap_err(),
         operation_modes(&five_bar, five_bar.home(), Some(foreign), ModeOptions::default())
             .unwrap_err(),
@@ -100,4 +110,8 @@ fn frames_of_other_mechanisms_are_errors() {
     for error in messages {
         assert!(error.to_string().contains("another mechanism"), "{error}");
     }
+    assert_eq!(Analytic::of(&panda, foreign).unwrap_err(), NotSolvable::Foreign);
+    // A matrix of another size.
+    let error = state.jacobian_into(panda.tool(), local, &mut Matrix::zeros(6, 6)).unwrap_err();
+    assert!(error.to_string().contains("columns of the Jacobian"), "{error}");
 }

@@ -54,9 +54,9 @@ fn sum_of_links(state: &State) -> Matrix {
     let mut counted: Vec<Matrix> = Vec::new();
     for link in m.links() {
         let frame = m.frame(&link.name).unwrap();
-        let Some(w) = body_inertia(state, frame) else { continue };
+        let Some(w) = body_inertia(state, frame).unwrap() else { continue };
         // A body counts once, with all links that are fixed to each other.
-        let jacobian = state.jacobian(frame, ReferenceFrame::LocalWorldAligned);
+        let jacobian = state.jacobian(frame, ReferenceFrame::LocalWorldAligned).unwrap();
         let one = &(&jacobian.transpose() * &w) * &jacobian;
         let same = |other: &Matrix| one.max_difference(other) < 1e-9 * one.max_abs();
         if counted.iter().any(same) {
@@ -119,7 +119,7 @@ fn kinetic_energy_by_finite_differences() {
     for link in arm.links() {
         let inertial = link.inertial.unwrap();
         let frame = arm.frame(&link.name).unwrap();
-        let pose = |state: &State| state.pose(frame) * inertial.link_from_inertia;
+        let pose = |state: &State| state.pose(frame).unwrap() * inertial.link_from_inertia;
         let (a, b, here) = (pose(&before), pose(&after), pose(&at(0.0)));
         let v = (b.translation - a.translation) * (0.5 / h);
         let omega = (b.rotation * a.rotation.inverse()).log() * (0.5 / h);
@@ -229,7 +229,7 @@ fn inertia_measures_manipulability() {
     let relation = MotionSpace::of(&chain.constraint).relation();
     let metrics = Metrics::UNIT.with_joint_inertia(&state).unwrap();
     let found = Manipulability::of(&relation, &metrics).unwrap().kinematic;
-    let jacobian = state.jacobian(arm.reference(), ReferenceFrame::LocalWorldAligned);
+    let jacobian = state.jacobian(arm.reference(), ReferenceFrame::LocalWorldAligned).unwrap();
     // The trace of J M^-1 J^T is the sum of the efficiencies.
     let mut whitened = jacobian.clone();
     metrics.joint.as_ref().unwrap().solve_right(&mut whitened);

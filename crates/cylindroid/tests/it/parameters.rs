@@ -173,7 +173,7 @@ fn secondary_tasks_work_on_every_mechanism() {
                 }
             };
             let mut q = robot.home().to_vec();
-            let pose = robot.state(&q).unwrap().pose(servo.options().end_effector);
+            let pose = robot.state(&q).unwrap().pose(servo.options().end_effector).unwrap();
             for _ in 0..5 {
                 servo.step(&q, pose).unwrap();
                 servo.advance(&mut q);

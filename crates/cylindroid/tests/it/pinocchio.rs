@@ -102,7 +102,7 @@ fn check(robot: &Mechanism, data: &Value) {
             mass_matrices += 1;
         }
         for (frame, pose) in configuration["poses"].as_object().unwrap() {
-            let got = state.pose(robot.frame(frame).unwrap()).to_matrix();
+            let got = state.pose(robot.frame(frame).unwrap()).unwrap().to_matrix();
             let what = format!("{label}, {frame}");
             assert_close(&what, &got.as_flattened()[..12], &numbers(pose), tolerance);
         }
@@ -112,7 +112,7 @@ fn check(robot: &Mechanism, data: &Value) {
             for (key, reference) in ReferenceFrame::NAMES {
                 let what = format!("{label}, {frame}, {key}");
                 let expected = matrix(&entry[key], &places);
-                assert_matrix(&what, &state.jacobian(of, reference), &expected, tolerance);
+                assert_matrix(&what, &state.jacobian(of, reference).unwrap(), &expected, tolerance);
                 if let Some(dot) = entry.get(format!("dot_{key}")) {
                     let got = state.jacobian_dot(&rates, of, reference).unwrap();
                     let size = rates.iter().map(|r| r.abs()).sum::<f64>().max(1.0);

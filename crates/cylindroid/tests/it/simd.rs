@@ -29,13 +29,13 @@ fn results() {
     for robot in [catalogue::load("panda").unwrap(), catalogue::load("ur5e").unwrap(), zoo()] {
         let (name, n, tool) = (robot.name(), robot.n(), robot.tool());
         let q: Vec<f64> = (0..21).flat_map(|_| random.q(&robot)).collect();
-        let batch = KinematicsBatch::new(&robot, tool);
+        let batch = KinematicsBatch::new(&robot, tool).unwrap();
         print(&format!("poses of {name}"), &batch.poses(&q).unwrap());
         let jacobians = batch.jacobians(&q, ReferenceFrame::LocalWorldAligned).unwrap();
         print(&format!("Jacobians of {name}"), &jacobians);
         let state = robot.state(&q[..n]).unwrap();
-        print(&format!("pose of {name}"), state.pose(tool).to_matrix().as_flattened());
-        let jacobian = state.jacobian(tool, ReferenceFrame::Local);
+        print(&format!("pose of {name}"), state.pose(tool).unwrap().to_matrix().as_flattened());
+        let jacobian = state.jacobian(tool, ReferenceFrame::Local).unwrap();
         print(&format!("Jacobian of {name}"), jacobian.as_slice());
         let values: Vec<f64> = Svd::of(&jacobian).values().collect();
         print(&format!("singular values of {name}"), &values);
@@ -56,10 +56,13 @@ fn results() {
         servo.advance(&mut q);
     }
     print("servo", &q);
-    let goal = Goal::pose(panda.tool(), panda.state(&random.q(&panda)).unwrap().pose(panda.tool()));
+    let goal = Goal::pose(
+        panda.tool(),
+        panda.state(&random.q(&panda)).unwrap().pose(panda.tool()).unwrap(),
+    );
     let found = solve(&panda, &[goal], &IkOptions::default()).unwrap();
     assert!(found.success);
-    let reached = panda.state(&found.q).unwrap().pose(panda.tool()).to_matrix();
+    let reached = panda.state(&found.q).unwrap().pose(panda.tool()).unwrap().to_matrix();
     print("pose by inverse kinematics", reached.as_flattened());
     let bar = catalogue::load("five-bar").unwrap();
     let batch = ManipulabilityBatch::new(&bar, &BatchOptions::default()).unwrap();

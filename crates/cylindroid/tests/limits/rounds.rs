@@ -165,10 +165,10 @@ fn one_task(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     let end_effector = servo.options().end_effector;
     let mut q = if closed { robot.home().to_vec() } else { random.configuration(robot) };
     let mut watch = Watch::new(robot, dt, acceleration);
-    let mut goal = target(robot.state(&q).unwrap().pose(end_effector), random);
+    let mut goal = target(robot.state(&q).unwrap().pose(end_effector).unwrap(), random);
     for step in 0..STEPS {
         if random.once_in(150) {
-            goal = target(robot.state(&q).unwrap().pose(end_effector), random);
+            goal = target(robot.state(&q).unwrap().pose(end_effector).unwrap(), random);
         }
         if !closed && random.once_in(250) && takes_pushes(robot) {
             push(robot, &mut q, random);
@@ -238,7 +238,7 @@ fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random<'_>) -> Vec<MotionTas
             _ => TaskObjective::Frame {
                 end_effector,
                 components,
-                target: target(state.pose(frame), random).into(),
+                target: target(state.pose(frame).unwrap(), random).into(),
             },
         };
         MotionTask {

@@ -87,7 +87,7 @@ fn modes_are_those_of_the_closed_form() {
 /// The directions of the two distal links at a configuration.
 fn distal(mechanism: &Mechanism, q: &[f64]) -> [Vec3; 2] {
     let state = mechanism.state(q).unwrap();
-    let at = |frame: &str| state.pose(mechanism.frame(frame).unwrap());
+    let at = |frame: &str| state.pose(mechanism.frame(frame).unwrap()).unwrap();
     let joint = |name: &str| {
         let joint = mechanism.joints().iter().find(|j| j.name == name);
         let (link, place) = match joint {

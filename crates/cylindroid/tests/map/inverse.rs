@@ -27,7 +27,7 @@ fn all(mechanism: &Mechanism, task: Task, target: Pose, count: usize) -> Vec<Sol
         let error = LoopClosureError::of(&state).unwrap();
         assert!(error.is_closed(mechanism.reach()) && solution.success);
         assert!(mechanism.outside_limits(&solution.q).next().is_none());
-        let error = task.error(state.pose(mechanism.reference()), target);
+        let error = task.error(state.pose(mechanism.reference()).unwrap(), target);
         assert!(error.linear.norm() < 1e-9 && error.angular.norm() < 1e-9, "{error:?}");
         assert!(solution.position_error <= 1e-9 && solution.reason.is_none());
     }
@@ -106,8 +106,9 @@ fn legs_of_a_planar_platform() {
 fn legs_of_a_stewart_platform() {
     let mechanism = catalogue::load("stewart").unwrap();
     let home = mechanism.state(mechanism.home()).unwrap();
-    let pose =
-        |q: &[f64], frame: &str| mechanism.state(q).unwrap().pose(mechanism.frame(frame).unwrap());
+    let pose = |q: &[f64], frame: &str| {
+        mechanism.state(q).unwrap().pose(mechanism.frame(frame).unwrap()).unwrap()
+    };
     let reference = mechanism.reference();
     let mut random = Random(2);
     for _ in 0..6 {
@@ -118,9 +119,10 @@ fn legs_of_a_stewart_platform() {
         for i in 1..=6 {
             // The cylinder's frame is at its universal joint, the rod's at the slide: the ball of
             // home moves with the platform.
-            let base = home.pose(mechanism.frame(&format!("cylinder{i}")).unwrap()).translation;
+            let base =
+                home.pose(mechanism.frame(&format!("cylinder{i}")).unwrap()).unwrap().translation;
             let ball = pose(mechanism.home(), &format!("rod{i}")).translation;
-            let moved = target * (home.pose(reference).inverse() * ball);
+            let moved = target * (home.pose(reference).unwrap().inverse() * ball);
             let stretched = (moved - base).norm() - (ball - base).norm();
             let leg = place(&mechanism, &format!("leg{i}"));
             assert!(
@@ -137,8 +139,8 @@ fn legs_of_a_stewart_platform() {
 fn arms_of_a_delta() {
     let mechanism = catalogue::load("delta").unwrap();
     let state = mechanism.state(mechanism.home()).unwrap();
-    let home = state.pose(mechanism.reference());
-    let at_home = |frame: &str| state.pose(mechanism.frame(frame).unwrap()).translation;
+    let home = state.pose(mechanism.reference()).unwrap();
+    let at_home = |frame: &str| state.pose(mechanism.frame(frame).unwrap()).unwrap().translation;
     let arms = ["arm1", "arm2", "arm3"].map(|name| place(&mechanism, name));
     let mut random = Random(6);
     for _ in 0..4 {
@@ -146,7 +148,7 @@ fn arms_of_a_delta() {
         let found = all(&mechanism, Task::POSITION, target, 1);
         assert_eq!(found.len(), 1);
         let state = mechanism.state(&found[0].q).unwrap();
-        assert!(state.pose(mechanism.reference()).rotation.angle_to(home.rotation) < 1e-9);
+        assert!(state.pose(mechanism.reference()).unwrap().rotation.angle_to(home.rotation) < 1e-9);
         for (k, arm) in arms.into_iter().enumerate() {
             // Arms 0.3 at radius 0.2, rods 0.5 to radius 0.05 of the platform: between the rods of a
             // pair.

@@ -203,7 +203,7 @@ fn balls_of_a_five_bar_are_those_of_its_circles() {
     // Every bound is the nearest point of its circle, or lies where the links are aligned.
     for bound in &found.bounds {
         let state = mechanism.state(&bound.q).unwrap();
-        let tip = state.pose(mechanism.reference()).translation;
+        let tip = state.pose(mechanism.reference()).unwrap().translation;
         assert!((tip.x - bound.point[0]).hypot(tip.y - bound.point[1]) < 1e-9);
         let apart = (bound.point[0] - 1.0).hypot(bound.point[1] - 2.0);
         assert!((apart - bound.distance).abs() < 1e-12);
@@ -215,7 +215,7 @@ fn balls_of_a_five_bar_are_those_of_its_circles() {
 fn balls_of_a_stewart_platform_are_those_of_a_dense_search() {
     let mechanism = cylindroid::load("stewart").unwrap();
     let state = mechanism.state(mechanism.home()).unwrap();
-    let frame = |name: String| state.pose(mechanism.frame(&name).unwrap());
+    let frame = |name: String| state.pose(mechanism.frame(&name).unwrap()).unwrap();
     let joint = |name: String| {
         let joint = mechanism.joints().iter().find(|j| j.name == name).unwrap();
         let link = mechanism.links()[joint.parent].name.clone();
@@ -285,7 +285,7 @@ fn balls_of_an_arm_are_those_of_its_closed_form() {
     }
     // In the space of the tool: a sphere of two links, and the first axis.
     let start = vec![0.3, 0.5, -1.0];
-    let p = arm.state(&start).unwrap().pose(arm.tool()).translation;
+    let p = arm.state(&start).unwrap().pose(arm.tool()).unwrap().translation;
     let options =
         ZoneOptions { start: Some(start), limits: false, rays: 64, ..ZoneOptions::default() };
     let found = zone(&arm, &["x", "y", "z"], options);

@@ -127,7 +127,7 @@ fn springs(m: &Mechanism) -> Elasticity {
 fn whole_robots(world: &mut World) {
     let arm = cylindroid::load("ur5e").unwrap();
     let state = arm.state(arm.home()).unwrap();
-    let pose = state.pose(arm.tool());
+    let pose = state.pose(arm.tool()).unwrap();
     let mut analytic = ik::Analytic::of(&arm, arm.tool()).unwrap();
     let solutions = analytic.solve(pose, arm.home()).unwrap();
     world.keep(solutions[0]);

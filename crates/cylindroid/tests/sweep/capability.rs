@@ -147,7 +147,7 @@ fn forward_samples_are_reached() {
         let samples = crate::of(&robot, Source::Samples { count, seed: 3 }, &[]);
         let mut missed = 0;
         for q in configurations(&robot, &samples.table(0..count).unwrap()) {
-            let pose = robot.state(&q).unwrap().pose(robot.tool());
+            let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let table = map(&robot, alone(pose, 1), &[]);
             missed += 1 - counts(&table, "orientations")[0];
         }
@@ -163,7 +163,7 @@ fn samples_of_other_arms_are_reached() {
     for (robot, rolls, directions) in [(&arm, 0, 0), (&youbot, 0, 1)] {
         let samples = crate::of(robot, Source::Samples { count: 40, seed: 5 }, &[]);
         for q in configurations(robot, &samples.table(0..40).unwrap()) {
-            let pose = robot.state(&q).unwrap().pose(robot.tool());
+            let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let grid = VoxelGrid { directions, ..alone(pose, rolls) };
             assert_eq!(map(robot, grid, &[]).numbers("reachability").unwrap(), [1.0]);
         }
@@ -187,7 +187,7 @@ fn methods_agree() {
     assert!(counts(&rolls, "directions").iter().sum::<u64>() > 40 && apart < 16, "{apart}");
 
     let q = [0.3, 0.5, -2.0, 0.4, 0.6, 0.2];
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let table = map(&robot, alone(pose, 1), &[Quantity::LimitDistance, Quantity::Condition]);
     let goals = [cylindroid::ik::Goal::pose(robot.tool(), pose)];
     let solutions = cylindroid::ik::solve_distinct(&robot, &goals, &Default::default(), 8).unwrap();

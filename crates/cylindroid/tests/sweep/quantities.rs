@@ -20,7 +20,7 @@ fn poses_and_jacobians_are_those_of_a_state() {
         let table = sweep.table(0..300).unwrap();
         for (i, q) in configurations(&robot, &table).iter().enumerate() {
             let state = robot.state(q).unwrap();
-            let pose = state.pose(robot.tool());
+            let pose = state.pose(robot.tool()).unwrap();
             let at = |name: &str| table.numbers(name).unwrap()[i];
             let quaternion = pose.rotation.to_quaternion();
             let (t, r) = (pose.translation, quaternion);
@@ -28,7 +28,7 @@ fn poses_and_jacobians_are_those_of_a_state() {
             for (name, x) in ["x", "y", "z", "qw", "qx", "qy", "qz"].iter().zip(expected) {
                 assert!((at(name) - x).abs() < 1e-13, "{model} {name}");
             }
-            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
             for (row, name) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().enumerate() {
                 for (column, c) in robot.coordinates().iter().enumerate() {
                     let found = at(&format!("jacobian_{name}_{}", c.name));
@@ -56,7 +56,7 @@ fn singular_values_and_what_follows_from_them() {
         for (i, q) in configurations(&robot, &table).iter().enumerate() {
             let at = |name: &str| table.numbers(name).unwrap()[i];
             let state = robot.state(q).unwrap();
-            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
             let of = |length: f64| {
                 let scale = |r: usize| if r < 3 { 1.0 / length } else { 1.0 };
                 Svd::of(&Matrix::from_fn(rows.len(), robot.n(), |r, c| {
@@ -136,7 +136,7 @@ fn screw_systems_are_those_of_screws() {
         let Some(Values::Texts(classes)) = table.column("gibson_hunt") else { panic!() };
         for (i, q) in configurations(&robot, &table).iter().enumerate() {
             let state = robot.state(q).unwrap();
-            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
             let options = ScrewOptions::with_length(robot.reach());
             let system = ScrewSystem::of_columns(&j, &options).unwrap();
             assert_eq!(classes[i], system.class().name());

@@ -134,7 +134,7 @@ pub(super) fn goals(args: &IkArgs, robot: &Mechanism, start: &[f64]) -> anyhow::
     if is_given || (frames.is_empty() && args.tasks.is_none()) {
         let end_effector = reference_or_tool(robot, &args.frame)?;
         let (task, what) = task(given, None, robot)?;
-        let from = robot.state(start)?.pose(end_effector);
+        let from = robot.state(start)?.pose(end_effector)?;
         let other = ", with --task FRAME=X,Y,Z or with --tasks FILE.toml";
         let target = target_pose(given, from, degrees, other)?;
         all.push(Goal::frame(end_effector, task, target));

@@ -68,10 +68,10 @@ pub(crate) fn run(args: &JacobianArgs, style: Style, out: &mut dyn Write) -> any
     };
 
     let (matrix, analytical) = match args.analytical {
-        None => (state.jacobian(end_effector, reference), None),
+        None => (state.jacobian(end_effector, reference)?, None),
         Some(angles) => {
             let (kind, angles) = orientation_rates(angles);
-            let of = state.analytical_jacobian(end_effector, kind);
+            let of = state.analytical_jacobian(end_effector, kind)?;
             let report = AnalyticalJson { angles, determinant: of.determinant, exists: of.exists };
             (of.matrix, Some(report))
         }

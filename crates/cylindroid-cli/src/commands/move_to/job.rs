@@ -80,7 +80,7 @@ impl Job {
         options.check(&robot)?;
 
         let defaults = joint_defaults(args);
-        let pose = |q: &[f64]| robot.state(q).map(|s| s.pose(options.end_effector));
+        let pose = |q: &[f64]| robot.state(q)?.pose(options.end_effector);
         let from = pose(&start)?;
         let (target_pose, goal, controlled) = if let Some(q) = &args.path.joint_to {
             no_loops(&robot)?;

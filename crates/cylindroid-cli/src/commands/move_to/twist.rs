@@ -20,7 +20,7 @@ pub(super) fn simulate(
         }
         Ok(Some(match job.options.task.axes {
             ReferenceFrame::Local => {
-                let axes = job.robot.state(q)?.pose(job.options.end_effector).rotation;
+                let axes = job.robot.state(q)?.pose(job.options.end_effector)?.rotation;
                 let Twist { linear, angular } = goal.twist;
                 Twist { linear: axes * linear, angular: axes * angular }
             }

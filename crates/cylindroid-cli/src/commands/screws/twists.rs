@@ -102,7 +102,7 @@ impl Twists {
         let names = if closed {
             (1..=twists.len()).map(|i| i.to_string()).collect()
         } else {
-            let chain = Chain::new(robot, end_effector);
+            let chain = Chain::new(robot, end_effector)?;
             let coordinates = chain.coordinates().iter();
             coordinates.map(|&c| robot.coordinates()[c].name.clone()).collect()
         };

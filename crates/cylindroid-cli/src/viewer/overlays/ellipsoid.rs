@@ -40,8 +40,8 @@ pub(super) fn ellipsoid(session: &Session, kind: Ellipsoid) -> Result<Option<Ell
     let of = session.options().end_effector;
     let chain = ClosedChain::of(state, Some(of.frame), None)?;
     let components = mechanism.dimension().components();
-    let center = state.pose(of).translation;
-    let offset = center - state.pose(of.frame).translation;
+    let center = state.pose(of)?.translation;
+    let offset = center - state.pose(of.frame)?.translation;
     let angular = kind == Ellipsoid::AngularVelocity;
     let chosen: Vec<usize> = components.iter().copied().filter(|&c| (c >= 3) == angular).collect();
     // The twist of the tool point, from that of the frame.

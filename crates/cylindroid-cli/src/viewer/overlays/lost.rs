@@ -44,7 +44,8 @@ pub(super) fn lost(
         ));
     }
     let (mechanism, state) = (session.mechanism(), session.state());
-    let tool = state.pose(session.options().end_effector).translation;
+    let tool =
+        state.pose(session.options().end_effector).map_err(|error| error.to_string())?.translation;
     let Some(screw) = Screw::of(weakest.at_point(-tool)) else {
         return Err("No motion of the tool is possible here.".to_owned());
     };

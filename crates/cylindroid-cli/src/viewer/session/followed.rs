@@ -11,7 +11,7 @@ impl Session {
     pub(in super::super) fn follow_program(&mut self, q: &[f64]) -> Result<()> {
         self.state.set(q)?;
         if !self.is_target_placed {
-            self.target = self.state.pose(self.options.end_effector);
+            self.target = self.state.pose(self.options.end_effector)?;
         }
         (self.is_playing, self.is_followed) = (false, true);
         self.self_motion = None;

@@ -102,7 +102,7 @@ fn in_words(verdict: &Verdict, second_order: Option<&str>) -> String {
 fn drawing(m: &Mechanism) -> String {
     let state = m.state(m.home()).unwrap();
     let poses: Vec<Pose> =
-        m.links().iter().map(|link| state.pose(m.frame(&link.name).unwrap())).collect();
+        m.links().iter().map(|link| state.pose(m.frame(&link.name).unwrap()).unwrap()).collect();
     let flat = |p: Vec3| match m.dimension() {
         Dimension::Planar => [p.x, -p.y],
         _ => [0.87 * (p.x - p.y), -0.9 * p.z + 0.42 * (p.x + p.y)],
@@ -127,7 +127,7 @@ fn drawing(m: &Mechanism) -> String {
         spots.push((a, j.actuated));
     }
     let reference = m.frame_of(m.reference());
-    links[reference.link].push(flat(state.pose(m.reference()).translation));
+    links[reference.link].push(flat(state.pose(m.reference()).unwrap().translation));
     let all: Vec<[f64; 2]> = links.iter().flatten().copied().collect();
     let bound = |axis: usize, most: fn(f64, f64) -> f64, start: f64| {
         all.iter().fold(start, |bound, p| most(bound, p[axis]))

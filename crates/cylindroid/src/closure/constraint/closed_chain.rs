@@ -89,7 +89,7 @@ impl ClosedChain {
                 add(i, mechanism.n() + k, -1.0);
             }
         }
-        let target = state.tip(reference.into());
+        let target = state.tip(reference);
         target.for_each_column(target.world_from_tip.translation, |_, c, twist| {
             let twist = twist.to_array();
             for (i, &component) in components.iter().enumerate() {

@@ -53,7 +53,7 @@ pub(crate) fn for_each_rate(
     // motions of that ancestor do not change the row.
     let mut from = 0;
     for pair in rows.chunk_by(|x, y| x.pair == y.pair) {
-        let tip = |link| state.tip(mechanism.link_frame(link).into());
+        let tip = |link| state.tip(mechanism.link_frame(link));
         let (a, b) = (tip(pair[0].a), tip(pair[0].b));
         let common = a.common_slot(&b);
         for (link, sign) in [(a, -1.0), (b, 1.0)] {

@@ -193,7 +193,7 @@ impl Constraint {
     /// // The one redundant motion of a 7R arm.
     /// let panda = cylindroid::load("panda")?;
     /// let state = panda.state(panda.home())?;
-    /// let jacobian = state.jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned);
+    /// let jacobian = state.jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned)?;
     /// let mobility = Mobility::of(&Constraint::serial(&jacobian)?);
     /// assert_eq!((mobility.dof.dimension(), mobility.redundancy.dimension()), (7, 1));
     /// # Ok::<(), cylindroid::Error>(())

@@ -32,7 +32,7 @@ pub(crate) struct PlatformCoordinates {
 
 impl PlatformCoordinates {
     pub(crate) fn of(mechanism: &Mechanism, state: &State, frame: FrameId, length: f64) -> Self {
-        let origin = state.pose(frame).translation;
+        let origin = state.tip(frame).world_from_tip.translation;
         Self { frame, origin, length, components: mechanism.dimension().components() }
     }
 
@@ -123,11 +123,11 @@ impl LimbConstraint {
         let (d, k) = (platform.d(), columns.len());
         let mut matrix = Matrix::zeros(own.len() + if carries { d } else { 0 }, k + d);
         let column_of = |place: usize| columns.iter().position(|c| c.place == place);
-        let target = state.tip(platform.frame.into());
+        let target = state.tip(platform.frame);
         for (i, row) in own.iter().enumerate() {
             let size = row.unit.size(platform.length);
             for (link, sign) in [(row.a, -1.0), (row.b, 1.0)] {
-                let tip = state.tip(mechanism.link_frame(link).into());
+                let tip = state.tip(mechanism.link_frame(link));
                 let beyond = tip.common_slot(&target) == limb.platform;
                 let end = if beyond { limb.platform } else { 0 };
                 tip.for_each_column_above(end, row.point, |_, c, twist| {

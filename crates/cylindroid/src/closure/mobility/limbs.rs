@@ -219,7 +219,7 @@ fn joint_twist(state: &State, edge: EdgeKind, name: &str, at: Vec3) -> Twist {
             let [parent, child] = [joint.parent, joint.child].map(|l| mechanism.link_frame(l));
             let end = mechanism.frame_of(parent).slot;
             let mut found = Twist::ZERO;
-            state.tip(child.into()).for_each_column_above(end, at, |_, c, twist| {
+            state.tip(child).for_each_column_above(end, at, |_, c, twist| {
                 if mechanism.coordinates()[c].name == name {
                     found = twist;
                 }

@@ -38,9 +38,9 @@ pub fn frame_twists(state: &State, of: impl Into<EndEffector>) -> Result<Vec<Twi
     if mechanism.is_closed() {
         return Ok(ClosedChain::of(state, Some(of.frame), None)?.reference_twists(state));
     }
-    let jacobian = state.jacobian(of, ReferenceFrame::World);
+    let jacobian = state.jacobian(of, ReferenceFrame::World)?;
     let twist = |&c: &usize| Twist::from_array(std::array::from_fn(|i| jacobian.column(c)[i]));
-    Ok(Chain::new(mechanism, of).coordinates().iter().map(twist).collect())
+    Ok(Chain::of(mechanism, of).coordinates().iter().map(twist).collect())
 }
 
 impl ClosedChain {
@@ -65,7 +65,7 @@ impl ClosedChain {
         let parts = MotionSpace::of(&self.constraint).relation().motions();
         let planar = self.constraint.object() == Dimension::Planar.freedoms();
         let components = if planar { Dimension::Planar } else { Dimension::Spatial }.components();
-        let origin = state.pose(self.reference).translation;
+        let origin = state.tip(self.reference).world_from_tip.translation;
         let twist = |column: &[f64]| {
             let mut all = [0.0; 6];
             components.iter().zip(column).for_each(|(&i, x)| all[i] = *x);

@@ -118,7 +118,7 @@ impl Landmarks {
             })
             .collect();
         let rests = |landmark: &Landmark, at: &Vec3| {
-            let tip = state.tip(mechanism.link_frame(landmark.link).into());
+            let tip = state.tip(mechanism.link_frame(landmark.link));
             rates.iter().all(|rates| {
                 let mut twist = Twist::ZERO;
                 tip.for_each_column(Vec3::ZERO, |_, c, unit| twist = twist + unit * rates[c]);

@@ -21,7 +21,6 @@ use crate::closure::constraint::loop_closure_error::LoopClosureError;
 use crate::closure::singularity_kind::SingularityKind;
 use crate::error::{Error, Result};
 use crate::kinematics::ReferenceFrame;
-use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::screws::Screw;
 use crate::spatial::Twist;
@@ -284,12 +283,8 @@ fn in_sight(tracker: &PathTracker<'_>, point: &Point) -> Result<PathSingularity>
     let rates: Vec<f64> =
         motion.iter().enumerate().map(|(i, x)| x * unit_of(mechanism, i)).collect();
     let state = mechanism.state(&point.closure.q)?;
-    let twist = |at: ReferenceFrame| {
-        let jacobian: Matrix = state.jacobian(mechanism.reference(), at);
-        let of = jacobian.mul_vec(&rates);
-        Twist::from_array(std::array::from_fn(|i| of[i]))
-    };
-    let (here, world) = (twist(ReferenceFrame::LocalWorldAligned), twist(ReferenceFrame::World));
+    let twist = |at| state.twist(&rates, mechanism.reference(), at);
+    let (here, world) = (twist(ReferenceFrame::LocalWorldAligned)?, twist(ReferenceFrame::World)?);
     let small = distance.sqrt().max(VANISHING);
     let moves = (here.linear.norm() / mechanism.reach()).hypot(here.angular.norm()) > small;
     let kind = match (taken > small, moves) {

@@ -34,7 +34,7 @@ use crate::model::{Mechanism, Parameter, catalogue, formats};
 /// "#;
 /// let arms = ParametricModel::of_text(text, "arm.toml".as_ref(), &[])?;
 /// let long = arms.with(&[("length", 0.8)])?;
-/// let tip = long.state(&[0.0])?.pose(long.frame("tip")?);
+/// let tip = long.state(&[0.0])?.pose(long.frame("tip")?)?;
 /// assert_eq!(tip.translation.x, 0.8);
 /// assert!(arms.with(&[("length", 2.0)]).is_err());
 /// # Ok::<(), cylindroid::Error>(())

@@ -38,9 +38,9 @@ pub struct Reconfiguration {
 ///
 /// let robot = cylindroid::load("ur5e")?;
 /// let servo = Servo::new(&robot, ServoOptions::new(&robot))?;
-/// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool());
+/// let target = robot.state(&[0.3, -1.1, 1.4, 0.2, 1.0, 0.4])?.pose(robot.tool())?;
 /// let found = find_reachable_configuration(&servo, robot.home(), target, 100)?.expect("in reach");
-/// let there = robot.state(&found.q)?.pose(robot.tool());
+/// let there = robot.state(&found.q)?.pose(robot.tool())?;
 /// assert!(there.error_to(target).linear.norm() < servo.options().tolerance.position);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```

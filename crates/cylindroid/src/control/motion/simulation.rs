@@ -61,7 +61,7 @@ pub struct MotionResult {
 /// use cylindroid::{Servo, ServoOptions};
 ///
 /// let robot = cylindroid::load("panda")?;
-/// let target = robot.state(&[0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5])?.pose(robot.tool());
+/// let target = robot.state(&[0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5])?.pose(robot.tool())?;
 /// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
 /// let mut times = Vec::new();
 /// let result = simulate(
@@ -114,7 +114,7 @@ pub fn simulate(
 /// let up = Twist { linear: Vec3::Z * 0.1, angular: Vec3::ZERO };
 /// let command = |time, _: &[f64]| Ok((time < 1.0).then_some(up));
 /// let result = simulate_twist(&mut servo, robot.home(), 10.0, command, |_| ())?;
-/// let way = |q| Ok::<_, cylindroid::Error>(robot.state(q)?.pose(robot.tool()).translation);
+/// let way = |q| Ok::<_, cylindroid::Error>(robot.state(q)?.pose(robot.tool())?.translation);
 /// assert!(result.reached && (way(&result.q)? - way(robot.home())?).norm() > 0.09);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```

@@ -130,7 +130,7 @@ impl Servo {
         let chain = if mechanism.is_closed() {
             Chain::whole(mechanism, options.end_effector)
         } else {
-            Chain::new(mechanism, options.end_effector)
+            Chain::of(mechanism, options.end_effector)
         };
         let n = chain.n();
         if n == 0 {
@@ -241,13 +241,13 @@ impl Servo {
     /// let robot = cylindroid::load("panda")?;
     /// let mut servo = Servo::new(&robot, ServoOptions::new(&robot))?;
     /// let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
-    /// let mut target = robot.state(&q)?.pose(robot.tool());
+    /// let mut target = robot.state(&q)?.pose(robot.tool())?;
     /// target.translation = target.translation + Vec3::Z * 0.05;
     /// for _ in 0..1000 {
     ///     servo.step(&q, target)?; // command servo.joint_velocities() to the robot
     ///     servo.advance(&mut q); // in a simulation
     /// }
-    /// let error = robot.state(&q)?.pose(robot.tool()).error_to(target);
+    /// let error = robot.state(&q)?.pose(robot.tool())?.error_to(target);
     /// assert!(error.linear.norm() < 0.05 * (-4.5_f64).exp()); // 1 s at a gain of 5/s
     /// # Ok::<(), cylindroid::Error>(())
     /// ```

@@ -305,15 +305,18 @@ mod tests {
         let panda = crate::model::catalogue::load("panda").unwrap();
         let actuated = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
         let limits: Vec<_> = panda.coordinates().iter().map(|c| c.limits).collect();
-        let chain = Chain::new(&panda, panda.tool());
+        let chain = Chain::of(&panda, panda.tool());
         let space = TaskSpace::new(ServoOptions::new(&panda).scaling(), &chain, &limits);
         let method = Method::Truncated { eps: 1e-9 };
         let (mut kept, mut changed) = (0, 0);
         for _ in 0..300 {
             let q: Vec<f64> = panda.home().iter().map(|x| x + next()).collect();
             let mut coupled = Coupled::new(&panda, &[], Vec::new(), 6).unwrap();
-            coupled.task =
-                panda.state(&q).unwrap().jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned);
+            coupled.task = panda
+                .state(&q)
+                .unwrap()
+                .jacobian(panda.tool(), ReferenceFrame::LocalWorldAligned)
+                .unwrap();
             let mut reduced = Matrix::zeros(6, actuated);
             coupled.close_measured(&q).unwrap();
             coupled.load(&space, 1e-3, &mut reduced).unwrap();

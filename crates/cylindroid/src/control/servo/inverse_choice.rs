@@ -61,7 +61,7 @@ impl InverseChoice {
     ///     length: robot.reach(),
     /// };
     /// let inverse = choice.inverse(&state, robot.tool(), ReferenceFrame::Local, None)?;
-    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::Local);
+    /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::Local)?;
     /// let product = &jacobian * &inverse.matrix;
     /// assert!(product.max_difference(&cylindroid::Matrix::identity(6)) < 1e-12);
     /// # Ok::<(), cylindroid::Error>(())
@@ -82,9 +82,9 @@ impl InverseChoice {
         if let Some(twist) = twist {
             Error::check_finite("twist", &twist.to_array())?;
         }
-        let pose = state.pose(tool);
+        let pose = state.tip(tool).world_from_tip;
         let seen = |t: Twist, from| seen_from(reference, pose, to_world(from, pose, t));
-        let j = state.jacobian(tool, reference);
+        let j = state.jacobian(tool, reference)?;
         if !mechanism.is_closed() {
             return self.of_matrix(&j, twist, seen);
         }

@@ -154,7 +154,7 @@ impl ServoOptions {
     pub fn default_secondary(&self, mechanism: &Mechanism) -> Result<Vec<SecondaryTask>> {
         mechanism.check_frame(self.end_effector.frame)?;
         let components = self.task.components.iter().filter(|c| **c).count();
-        let joints = Chain::new(mechanism, self.end_effector).n();
+        let joints = Chain::of(mechanism, self.end_effector).n();
         if joints > components || mechanism.is_closed() {
             return Ok(vec![SecondaryTask::named("limit-avoidance", &[])?]);
         }

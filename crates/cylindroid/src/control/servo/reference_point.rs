@@ -104,8 +104,8 @@ impl InverseChoice {
         }
         Error::check_finite("twist", &asked.to_array())?;
         Error::check_finite("point", &point.to_array())?;
-        let pose = state.pose(tool);
-        let coordinates = Chain::new(mechanism, tool).coordinates().to_vec();
+        let pose = state.tip(tool).world_from_tip;
+        let coordinates = Chain::of(mechanism, tool).coordinates().to_vec();
         let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);
         let (at_tool, at_point) = (at(pose.translation)?, at(point)?);
         let both = at_tool.joint_velocities.as_ref().zip(at_point.joint_velocities.as_ref());
@@ -127,7 +127,7 @@ impl InverseChoice {
     ) -> Result<VelocitiesAtPoint> {
         let moved = pose.inverse() * Pose { translation: p, ..pose };
         let there = EndEffector { frame_from_tool: tool.frame_from_tool * moved, ..tool };
-        let all = state.jacobian(there, ReferenceFrame::LocalWorldAligned);
+        let all = state.jacobian(there, ReferenceFrame::LocalWorldAligned)?;
         let j = Matrix::from_fn(6, coordinates.len(), |i, k| all[(i, coordinates[k])]);
         let twist = asked.at_point(p - pose.translation);
         let at_p = |t: Twist, from| match from {

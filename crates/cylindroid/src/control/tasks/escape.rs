@@ -114,7 +114,7 @@ fn reach(mechanism: &Mechanism, objective: &TaskObjective) -> Option<(Vec3, f64)
         TaskObjective::Frame { end_effector, components, .. }
             if components.components[..3] == [true; 3] =>
         {
-            let chain = Chain::new(mechanism, *end_effector);
+            let chain = Chain::of(mechanism, *end_effector);
             Some((chain.first_origin(), chain.length_after_first_joint(mechanism)))
         }
         _ => None,

@@ -36,7 +36,7 @@ impl FrameCurvature {
         if mechanism.is_closed() {
             return None;
         }
-        let chain = Chain::new(mechanism, *end_effector);
+        let chain = Chain::of(mechanism, *end_effector);
         let own: Vec<Limits> = chain.coordinates().iter().map(|&i| limits[i]).collect();
         let scaling = TaskScaling {
             task: *components,
@@ -92,7 +92,7 @@ mod tests {
         let q: Vec<f64> = robot.home().iter().map(|x| x + 0.2).collect();
         for name in ["link4", robot.frame_of(robot.tool()).name.as_str()] {
             let frame = robot.frame(name).unwrap();
-            let target = robot.state(&q).unwrap().pose(frame).into();
+            let target = robot.state(&q).unwrap().tip(frame).world_from_tip.into();
             let objective =
                 TaskObjective::Frame { end_effector: frame.into(), components: Task::POSE, target };
             let mut own = FrameCurvature::of(&objective, &robot, &limits, &options).unwrap();
@@ -102,7 +102,7 @@ mod tests {
             let scale = |j: usize| 1.0 / options.joint_weights[j].sqrt();
             let rates = |q: &[f64]| -> Vec<f64> {
                 let state = robot.state(q).unwrap();
-                let jacobian = state.jacobian(frame, ReferenceFrame::LocalWorldAligned);
+                let jacobian = state.jacobian(frame, ReferenceFrame::LocalWorldAligned).unwrap();
                 let unit = |r: usize| root * if r < 3 { 1.0 / options.length } else { 1.0 };
                 let entry =
                     |j: usize| (0..6).map(|r| left[r] * unit(r) * jacobian[(r, j)]).sum::<f64>();

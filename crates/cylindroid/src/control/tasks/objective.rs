@@ -340,11 +340,11 @@ impl TaskObjective {
         rows.feed_forward.fill(0.0);
         match self {
             Self::Frame { end_effector, components, target } => {
-                let pose = state.pose(*end_effector);
+                let pose = state.tip(*end_effector).world_from_tip;
                 let seen = |twist| components.seen(pose, twist);
                 let error = seen(pose.error_to(target.pose));
                 let forward = seen(target.feed_forward);
-                state.jacobian_into(*end_effector, components.axes, &mut scratch.jacobian);
+                state.tip(*end_effector).jacobian_into(components.axes, &mut scratch.jacobian);
                 write(components.components, error, forward, &scratch.jacobian, rows);
             }
             Self::RelativeFrame { end_effector, reference, components, target } => {

@@ -65,7 +65,7 @@ const FOLLOWED: f64 = 0.1;
 /// let frame = |of, components, way| TaskObjective::Frame {
 ///     end_effector: of,
 ///     components,
-///     target: Target::from(Pose { translation: state.pose(of).translation + way, ..state.pose(of) }),
+///     target: Target::from(Pose { translation: state.pose(of)?.translation + way, ..state.pose(of)? }),
 /// };
 /// let tasks = vec![
 ///     MotionTask::new("hand", frame(panda.tool().into(), Task::POSE, Vec3::X * 0.05)),

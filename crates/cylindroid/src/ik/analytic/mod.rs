@@ -56,6 +56,8 @@ pub enum NotSolvable {
     Kind,
     /// No three axes intersect or are parallel as required.
     Axes,
+    /// The frame is one of another mechanism.
+    Foreign,
 }
 
 impl fmt::Display for NotSolvable {
@@ -68,6 +70,7 @@ impl fmt::Display for NotSolvable {
                 "neither the first nor the last three axes intersect in a point, nor are axes 2 to 4 \
                  or 3 to 5 parallel",
             ),
+            Self::Foreign => f.write_str("the frame is one of another mechanism"),
         }
     }
 }
@@ -137,7 +140,7 @@ impl Analytic {
     /// let mut ik = Analytic::of(&arm, arm.tool()).expect("three axes are parallel");
     /// assert_eq!(ik.geometry().to_string(), "parallel axes 2, 3 and 4, axes 5 and 6 meet");
     /// let q = [0.3, -1.1, 1.4, 0.2, 1.0, 0.4];
-    /// let answers = ik.solve(arm.state(&q)?.pose(arm.tool()), &q)?;
+    /// let answers = ik.solve(arm.state(&q)?.pose(arm.tool())?, &q)?;
     /// assert_eq!(answers.len(), 8);
     /// assert!(answers.iter().any(|a| a.q.iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-9)));
     /// # Ok::<(), cylindroid::Error>(())
@@ -145,9 +148,6 @@ impl Analytic {
     ///
     /// # Errors
     /// The reason why there is no closed form.
-    ///
-    /// # Panics
-    /// If the frame is of another mechanism.
     pub fn of(
         mechanism: &Mechanism,
         end_effector: impl Into<EndEffector>,
@@ -164,15 +164,12 @@ impl Analytic {
     /// let arm = cylindroid::load("panda")?;
     /// let q = arm.home();
     /// let mut ik = Analytic::with_locked(&arm, arm.tool(), &[6]).expect("a closed form");
-    /// assert!(ik.solve(arm.state(q)?.pose(arm.tool()), q)?.len() > 0);
+    /// assert!(ik.solve(arm.state(q)?.pose(arm.tool())?, q)?.len() > 0);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
     /// # Errors
     /// The reason why there is no closed form.
-    ///
-    /// # Panics
-    /// If the frame is of another mechanism.
     pub fn with_locked(
         mechanism: &Mechanism,
         end_effector: impl Into<EndEffector>,
@@ -182,7 +179,8 @@ impl Analytic {
             return Err(NotSolvable::Loops);
         }
         let end_effector = end_effector.into();
-        let mut chain = Chain::new(mechanism, end_effector);
+        mechanism.check_frame(end_effector.frame).map_err(|_| NotSolvable::Foreign)?;
+        let mut chain = Chain::of(mechanism, end_effector);
         let (locked, free): (Vec<usize>, Vec<usize>) =
             chain.coordinates().iter().partition(|c| locked.contains(c));
         let coordinates: [usize; 6] =

@@ -98,7 +98,7 @@ pub struct Arm {
 ///     builder.joint(joint);
 /// }
 /// let robot = builder.build()?;
-/// let flange = robot.state(&[0.0, 0.0])?.pose(robot.frame("flange")?);
+/// let flange = robot.state(&[0.0, 0.0])?.pose(robot.frame("flange")?)?;
 /// assert_eq!(flange.translation, Vec3::X);
 /// # Ok::<(), cylindroid::Error>(())
 /// ```

@@ -151,7 +151,7 @@ impl Voxels {
             }
             (_, _, true) => (Task::PLANAR, 3),
         };
-        let joints = Chain::new(mechanism, end_effector).n();
+        let joints = Chain::of(mechanism, end_effector).n();
         if joints >= needed {
             return Ok(task);
         }

@@ -51,7 +51,8 @@ fn frames_change_nothing() {
                 let pose = robot
                     .state(&[0.0; 6])
                     .unwrap()
-                    .pose(robot.frame(&format!("l{}", i + 1)).unwrap());
+                    .pose(robot.frame(&format!("l{}", i + 1)).unwrap())
+                    .unwrap();
                 (pose.rotation * robot.joints()[i].axis, pose.translation)
             })
             .collect();
@@ -62,7 +63,7 @@ fn frames_change_nothing() {
         assert_eq!(structure(&plain), structure(&moved));
         let q: Vec<f64> = random.vector(6);
         let solve = |robot: &Mechanism| {
-            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             Analytic::of(robot, robot.tool()).unwrap().solve(target, &[0.0; 6]).unwrap()
         };
         let (a, b) = (solve(&plain), solve(&moved));
@@ -84,7 +85,7 @@ fn as_many_as_a_long_search_finds() {
         let mut ik = Analytic::of(&robot, robot.tool()).unwrap();
         for _ in 0..4 {
             let q = random.vector(6).iter().map(|x| PI * x).collect::<Vec<_>>();
-            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let goal = Goal::pose(robot.tool(), target);
             let answers = ik.solve(target, &q).unwrap();
             confirm(&robot, target, &answers);
@@ -123,7 +124,7 @@ fn limits_and_whole_turns() {
                 q[i / 2 % 6] =
                     if i % 4 == 0 { limits[i / 2 % 6].lower } else { limits[i / 2 % 6].upper };
             }
-            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let start: Vec<f64> = random.vector(6).iter().map(|x| 8.0 * x).collect();
             let answers = ik.solve(target, &start).unwrap();
             confirm(&robot, target, &answers);

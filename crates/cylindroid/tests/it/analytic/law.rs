@@ -16,7 +16,7 @@ pub(super) fn apart(a: &[f64], b: &[f64]) -> f64 {
 /// Forward kinematics says the same, to 1e-10 in both parts.
 pub(super) fn confirm(robot: &Mechanism, target: Pose, answers: &[AnalyticSolution]) {
     for answer in answers {
-        let error = robot.state(&answer.q).unwrap().pose(robot.tool()).error_to(target);
+        let error = robot.state(&answer.q).unwrap().pose(robot.tool()).unwrap().error_to(target);
         let far = (error.linear.norm(), error.angular.norm());
         assert!(far.0 < 1e-10 * robot.reach() && far.1 < 1e-10, "{far:?} {answer:?}");
         assert!(answer.q.iter().all(|x| x.is_finite()));
@@ -31,7 +31,8 @@ pub(super) fn condition(robot: &Mechanism, q: &[f64]) -> f64 {
     let mut j = robot
         .state(q)
         .unwrap()
-        .jacobian(robot.tool(), cylindroid::ReferenceFrame::LocalWorldAligned);
+        .jacobian(robot.tool(), cylindroid::ReferenceFrame::LocalWorldAligned)
+        .unwrap();
     for c in 0..6 {
         (0..3).for_each(|r| j[(r, c)] /= robot.reach());
     }
@@ -49,7 +50,7 @@ pub(super) fn known_postures_are_found(
     let mut most = 0;
     for _ in 0..count {
         let q = random.vector(6).iter().map(|x| PI * x).collect::<Vec<_>>();
-        let target = robot.state(&q).unwrap().pose(robot.tool());
+        let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
         let start = random.vector(6);
         let answers = ik.solve(target, &start).unwrap();
         confirm(robot, target, &answers);

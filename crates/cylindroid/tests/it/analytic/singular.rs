@@ -22,7 +22,7 @@ fn a_straight_wrist_leaves_a_joint_free() {
             let mut q = random.vector(6).iter().map(|x| 3.0 * x).collect::<Vec<_>>();
             // At it, and so near that rounding tells no difference.
             q[zero] = [0.0, 1e-13, -1e-12][i % 3];
-            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let start = random.vector(6);
             let answers = ik.solve(target, &start).unwrap();
             confirm(robot, target, &answers);
@@ -38,7 +38,7 @@ fn a_straight_wrist_leaves_a_joint_free() {
         // A thousandth away nothing is free.
         let mut q = [0.3, -1.0, 1.2, 0.4, 0.5, 0.6];
         q[zero] = 1e-3;
-        let target = robot.state(&q).unwrap().pose(robot.tool());
+        let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
         let answers = ik.solve(target, &[0.0; 6]).unwrap();
         assert!(answers.iter().all(|a| a.free == [false; 6]));
         assert!(answers.iter().any(|a| apart(&a.q, &q) < 1e-9), "{answers:?}");
@@ -64,7 +64,7 @@ fn shoulder_and_elbow() {
         // In the plane of the arm the wrist is at angle q2 + b from the first axis' normal.
         let b = (-0.4 * q[2].cos()).atan2(0.5 + 0.4 * q[2].sin());
         q[1] = FRAC_PI_2 - b;
-        let target = robot.state(&q).unwrap().pose(robot.tool());
+        let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
         let start = random.vector(6);
         let answers = ik.solve(target, &start).unwrap();
         confirm(&robot, target, &answers);
@@ -77,7 +77,7 @@ fn shoulder_and_elbow() {
         // Stretched: the arm's two links in line.
         q[2] = FRAC_PI_2;
         q[1] = 0.7;
-        let target = robot.state(&q).unwrap().pose(robot.tool());
+        let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
         let answers = ik.solve(target, &start).unwrap();
         confirm(&robot, target, &answers);
         assert!(answers.iter().any(|a| apart(&a.q, &q) < 1e-5), "{q:?} {answers:?}");
@@ -87,7 +87,7 @@ fn shoulder_and_elbow() {
     for (place, value) in [(2, 0.0), (2, 1e-9), (2, PI), (4, PI)] {
         let mut q = [0.3, -1.0, 1.2, 0.4, 0.5, 0.6];
         q[place] = value;
-        let target = ur.state(&q).unwrap().pose(ur.tool());
+        let target = ur.state(&q).unwrap().pose(ur.tool()).unwrap();
         let answers = ik.solve(target, &q).unwrap();
         confirm(ur, target, &answers);
         assert!(answers.iter().any(|a| apart(&a.q, &q) < 1e-5), "{q:?} {answers:?}");
@@ -105,7 +105,7 @@ fn out_of_reach_has_no_answer() {
             assert!(ik.solve(target, &[0.0; 6]).unwrap().is_empty());
         }
         // Within the column that the arm's own offset keeps free.
-        let mut target = robot.state(&[0.1; 6]).unwrap().pose(robot.tool());
+        let mut target = robot.state(&[0.1; 6]).unwrap().pose(robot.tool()).unwrap();
         let wrist = target.translation + target.rotation * Vec3::new(0.0, 0.0, -0.0996);
         target.translation += Vec3::new(-wrist.x, -wrist.y, 0.0);
         if robot.name() == "ur5e" {
@@ -143,7 +143,7 @@ fn nearly_a_structure() {
         assert!(!ik.is_exact());
         for _ in 0..500 {
             let q = random.vector(6).iter().map(|x| PI * x).collect::<Vec<_>>();
-            let target = robot.state(&q).unwrap().pose(robot.tool());
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let answers = ik.solve(target, &q).unwrap();
             confirm(&robot, target, &answers);
             let found = answers.iter().any(|a| apart(&a.q, &q) < 1e-7);

@@ -42,8 +42,8 @@ fn five_bar_as_circles_meet() {
         assert_eq!(found.q[0], turn);
         // Joint q3 is one link of length 1 from q2 and one of sqrt 2 from q4.
         let state = five_bar.state(&found.q).unwrap();
-        let q3 = state.pose(coupler).translation;
-        let q2 = state.pose(five_bar.frame("coupler").unwrap()).translation;
+        let q3 = state.pose(coupler).unwrap().translation;
+        let q2 = state.pose(five_bar.frame("coupler").unwrap()).unwrap().translation;
         assert!(((q3 - q2).norm() - 1.0).abs() < 1e-9);
         assert!((q2.norm() - 2.0).abs() < 1e-9);
     }
@@ -122,7 +122,7 @@ fn passive_joints_follow_the_drives() {
     let four_bar = catalogue::load("four-bar").unwrap();
     let found = recover_passive(&four_bar, &[0.2, 0.0, 0.0]).unwrap();
     assert!(found.closed && found.q[0] == 0.2);
-    let rocker = four_bar.state(&found.q).unwrap().pose(four_bar.frame("rocker").unwrap());
+    let rocker = four_bar.state(&found.q).unwrap().pose(four_bar.frame("rocker").unwrap()).unwrap();
     let angle = 70_f64.to_radians() + 0.2;
     let [up, _] = circles([angle.cos(), angle.sin()], 1.8, [2.0, 0.0], 1.3).unwrap();
     assert_close("elbow", &rocker.translation.to_array()[..2], &up, 1e-9);

@@ -83,7 +83,7 @@ fn trees_are_serial() {
         let state = robot.state(&random.q(&robot)).unwrap();
         let chain = ClosedChain::of(&state, Some(robot.tool()), Some(1.0)).unwrap();
         let got = kinematic(&chain);
-        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
         let svd = Svd::of(&j);
         let expected: Vec<f64> = svd.values().filter(|s| *s > 1e-9).map(|s| s * s).collect();
         assert_eq!(got.len(), expected.len(), "{}", robot.name());
@@ -187,7 +187,7 @@ fn twists_of_frames() {
     }
     let robot = catalogue::load("ur5e").unwrap();
     let state = robot.state(&[0.1, -0.4, 0.7, 0.2, 0.9, -0.3]).unwrap();
-    let j = state.jacobian(robot.tool(), ReferenceFrame::World);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::World).unwrap();
     let twists = frame_twists(&state, robot.tool()).unwrap();
     assert_eq!(twists.len(), 6);
     twists.iter().enumerate().for_each(|(c, t)| assert_eq!(j.column(c), t.to_array()));
@@ -207,7 +207,7 @@ fn motions_of_the_reference() {
         let state = robot.state(&q).unwrap();
         let chain = ClosedChain::of(&state, None, None).unwrap();
         let system = ScrewSystem::of(&chain.reference_twists(&state), &options).unwrap();
-        let j = state.jacobian(robot.reference(), ReferenceFrame::World);
+        let j = state.jacobian(robot.reference(), ReferenceFrame::World).unwrap();
         let columns = ScrewSystem::of_columns(&j, &options).unwrap();
         assert_eq!(system.order(), columns.order(), "{name}");
         assert!(system.sine_to_system(&columns) < 1e-9, "{name}");
@@ -223,7 +223,7 @@ fn motions_of_the_reference() {
     let pose = |to: f64| {
         let way =
             track_path(&linkage, &start, &[0], &[to], ContinuationOptions::default()).unwrap();
-        linkage.state(&way.q).unwrap().pose(linkage.reference())
+        linkage.state(&way.q).unwrap().pose(linkage.reference()).unwrap()
     };
     let moved = log(pose(0.4 + h) * pose(0.4 - h).inverse());
     let (a, b) = (Screw::of(moved).unwrap(), Screw::of(twist).unwrap());

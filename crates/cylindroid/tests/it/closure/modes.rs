@@ -33,7 +33,7 @@ fn search(
 
 /// The pose of the reference frame at each mode.
 fn references(mechanism: &Mechanism, found: &AssemblyModes) -> Vec<Pose> {
-    let pose = |q: &[f64]| mechanism.state(q).unwrap().pose(mechanism.reference());
+    let pose = |q: &[f64]| mechanism.state(q).unwrap().pose(mechanism.reference()).unwrap();
     found.modes.iter().map(|m| pose(&m.assembly.q)).collect()
 }
 
@@ -64,7 +64,7 @@ fn four_bar_has_two() {
         let got: Vec<Vec3> = found
             .modes
             .iter()
-            .map(|m| four_bar.state(&m.assembly.q).unwrap().pose(rocker).translation)
+            .map(|m| four_bar.state(&m.assembly.q).unwrap().pose(rocker).unwrap().translation)
             .collect();
         assert_same_points(&got, &expected.map(|[x, y]| Vec3::new(x, y, 0.0)), 1e-9);
         assert_eq!((found.self_motion_dof(), found.unseen_probability()), (0, 0.0));
@@ -82,7 +82,8 @@ fn five_bar_has_two() {
         let mut guess = [0.0; 4];
         (guess[prescribed[0]], guess[prescribed[1]]) = (t1, t5);
         let found = search(&five_bar, &guess, &prescribed, 20);
-        let rocker = |q: &[f64]| five_bar.state(q).unwrap().pose(five_bar.frame("rocker").unwrap());
+        let rocker =
+            |q: &[f64]| five_bar.state(q).unwrap().pose(five_bar.frame("rocker").unwrap()).unwrap();
         let q4 = rocker(&guess) * (rocker(&[0.0; 4]).inverse() * Vec3::new(2.0, 1.0, 0.0));
         let (a, b) = (turned([0.0, 2.0], [0.0; 2], t1), [q4.x, q4.y]);
         let expected = circles(a, 1.0, b, 2_f64.sqrt()).unwrap();
@@ -98,7 +99,7 @@ fn three_legged_platform_as_a_scan_finds_them() {
     let platform = catalogue::load("3rrr").unwrap();
     let actuators: Vec<usize> = platform.actuated().collect();
     let at_home = platform.state(platform.home()).unwrap();
-    let origin = |name: &str| at_home.pose(platform.frame(name).unwrap()).translation;
+    let origin = |name: &str| at_home.pose(platform.frame(name).unwrap()).unwrap().translation;
     let base = [[0.0, 1.0], [-0.866_025_403_784_438_6, -0.5], [0.866_025_403_784_438_6, -0.5]];
     let elbow = [
         [0.499_883_076_380_133_8, 0.668_161_319_390_379_9],
@@ -290,7 +291,7 @@ fn spins_do_not_hide_modes() {
     let got: Vec<Vec3> = found
         .modes
         .iter()
-        .map(|m| mechanism.state(&m.assembly.q).unwrap().pose(rod).translation)
+        .map(|m| mechanism.state(&m.assembly.q).unwrap().pose(rod).unwrap().translation)
         .collect();
     let expected = circles([0.0, 0.0], 1.0, [2.5, 1.0], 2.0).unwrap();
     assert_same_points(&got, &expected.map(|[x, y]| Vec3::new(x, y, 0.0)), 1e-9);

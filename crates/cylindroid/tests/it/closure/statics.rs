@@ -170,7 +170,7 @@ fn through(m: &Mechanism, wrench: &[f64], compliance: Option<&[f64]>) -> Vec<Tra
 #[test]
 fn transmitted_wrenches_balance_the_load() {
     let m = catalogue::load("two-arm").unwrap();
-    let origin = m.state(m.home()).unwrap().pose(m.reference()).translation;
+    let origin = m.state(m.home()).unwrap().pose(m.reference()).unwrap().translation;
     let load = Wrench::from_array([1.0, -2.0, -30.0, 0.5, 0.2, -0.1]);
     // About the world's origin.
     let about = |w: Wrench, point: Vec3| w.at_point(Vec3::ZERO - point);

@@ -29,11 +29,11 @@ fn planar_cranks_transmit_the_sine_of_their_angle() {
             m.joints().iter().find(|j| j.name == name).map_or_else(
                 || {
                     let l = m.loops().iter().find(|l| l.name == name).unwrap();
-                    let pose = state.pose(m.frame(&m.links()[l.a].name).unwrap());
+                    let pose = state.pose(m.frame(&m.links()[l.a].name).unwrap()).unwrap();
                     (pose * l.link_a_from_joint).translation
                 },
                 |j| {
-                    let pose = state.pose(m.frame(&m.links()[j.parent].name).unwrap());
+                    let pose = state.pose(m.frame(&m.links()[j.parent].name).unwrap()).unwrap();
                     (pose * j.parent_from_joint).translation
                 },
             )

@@ -38,7 +38,7 @@ fn driven(m: &Mechanism, length: f64) -> (String, Vec<(String, f64)>) {
     options.speed.angular = 0.5;
     options.secondary = options.default_secondary(m).unwrap();
     let tool = options.end_effector;
-    let target = m.state(&goal).unwrap().pose(tool);
+    let target = m.state(&goal).unwrap().pose(tool).unwrap();
     let mut servo = Servo::new(m, options).unwrap();
     let mut numbers = Vec::new();
     let mut step = 0;

@@ -25,7 +25,7 @@ fn arms_of_the_catalogue() {
         let robot = catalogue::load(name).unwrap();
         for _ in 0..20 {
             let state = robot.state(&random.q(&robot)).unwrap();
-            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
             let svd = Svd::of(&j);
             let m = of(&j);
             let rank = j.rows().min(j.cols());

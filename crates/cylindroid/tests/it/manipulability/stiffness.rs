@@ -40,7 +40,7 @@ fn leg_wrench(state: &State, name: &str, point: Vec3) -> [f64; 6] {
     let m = state.mechanism();
     let joint = m.joints().iter().find(|j| j.name == name).unwrap();
     let parent = m.frame(&m.links()[joint.parent].name).unwrap();
-    let world_from_joint = state.pose(parent) * joint.parent_from_joint;
+    let world_from_joint = state.pose(parent).unwrap() * joint.parent_from_joint;
     let force = world_from_joint.rotation * joint.axis;
     let moment = (world_from_joint.translation - point).cross(force);
     let (f, n) = (force.to_array(), moment.to_array());
@@ -86,7 +86,8 @@ fn stiffness_is_the_second_derivative_of_the_energy() {
             let ends = ["u", "s"].map(|kind| {
                 let name = format!("{kind}{i}");
                 let m = state.mechanism();
-                let pose = |link: usize| state.pose(m.frame(&m.links()[link].name).unwrap());
+                let pose =
+                    |link: usize| state.pose(m.frame(&m.links()[link].name).unwrap()).unwrap();
                 let tree = m.joints().iter().find(|j| j.name == name);
                 let closing = m.loops().iter().find(|j| j.name == name);
                 match (tree, closing) {
@@ -129,8 +130,8 @@ fn compliances_of_a_serial_arm_add_up() {
     let q = [0.2, -0.4, 0.3, -1.9, 0.1, 1.6, 0.7];
     let state = arm.state(&q).unwrap();
     let mut elasticity = Elasticity::default();
-    let tool = state.pose(arm.tool()).translation;
-    let jacobian = state.jacobian(arm.tool(), ReferenceFrame::LocalWorldAligned);
+    let tool = state.pose(arm.tool()).unwrap().translation;
+    let jacobian = state.jacobian(arm.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
     let mut expected = Matrix::zeros(6, 6);
     for (i, c) in arm.coordinates().iter().enumerate() {
         let k = 1e4 * (1.0 + i as f64);
@@ -150,7 +151,7 @@ fn compliances_of_a_serial_arm_add_up() {
         translation: Vec3::new(0.05, 0.1, -0.2),
     };
     elasticity.link(&arm.links()[link].name, beam.clone(), place);
-    let pose = |link: usize| state.pose(arm.frame(&arm.links()[link].name).unwrap());
+    let pose = |link: usize| state.pose(arm.frame(&arm.links()[link].name).unwrap()).unwrap();
     let frames = [pose(joint.parent) * joint.parent_from_joint, pose(link) * place];
     for (frame, c) in frames.into_iter().zip([bearing, beam]) {
         let map = Matrix::from_fn(6, 6, |i, j| {
@@ -197,15 +198,18 @@ fn small_loads_deflect_by_the_compliance() {
     for size in [1e-1, 1e-2, 1e-3] {
         let mut q = q0.to_vec();
         for _ in 0..200 {
-            let jacobian =
-                arm.state(&q).unwrap().jacobian(arm.reference(), ReferenceFrame::LocalWorldAligned);
+            let jacobian = arm
+                .state(&q)
+                .unwrap()
+                .jacobian(arm.reference(), ReferenceFrame::LocalWorldAligned)
+                .unwrap();
             for i in 0..3 {
                 let load: f64 =
                     (0..6).map(|r| jacobian[(r, i)] * size * component(direction, d, r)).sum();
                 q[i] = q0[i] + load / k;
             }
         }
-        let moved = arm.state(&q).unwrap().pose(arm.reference()).translation - found.point;
+        let moved = arm.state(&q).unwrap().pose(arm.reference()).unwrap().translation - found.point;
         let wrench: Vec<f64> = kept(d).iter().map(|&r| size * direction[r]).collect();
         let linear = compliance.mul_vec(&wrench);
         let error = (0..2).map(|i| (moved.to_array()[i] - linear[i]).abs()).fold(0.0, f64::max);

@@ -43,13 +43,13 @@ fn seen_from_everywhere(arm: &str, h: f64) {
     let mut changes: Vec<(&str, Vec<f64>)> = vec![];
     for _ in 0..100 {
         let state = robot.state(&random.q(&robot)).unwrap();
-        let base = state.jacobian(robot.tool(), ReferenceFrame::World);
+        let base = state.jacobian(robot.tool(), ReferenceFrame::World).unwrap();
         let twist = matrix(&[random.twist()]);
         let options = ScrewOptions::with_length(robot.reach());
         let system = ScrewSystem::of_columns(&base, &options).unwrap();
         let outside = Twist::from_array(std::array::from_fn(|i| twist[(i, 0)]));
         assert!(!system.contains(outside));
-        let tool = state.pose(robot.tool()).inverse();
+        let tool = state.pose(robot.tool()).unwrap().inverse();
         let away = Pose { rotation: random.rotation(), translation: random.vec3(10.0) };
         let views = [
             View { name: "base, m", there_from_base: Pose::IDENTITY, unit: 1.0 },
@@ -116,7 +116,7 @@ fn within_the_span_all_agree() {
         let robot = catalogue::load(arm).unwrap();
         for _ in 0..50 {
             let state = robot.state(&random.q(&robot)).unwrap();
-            let j = state.jacobian(robot.tool(), ReferenceFrame::World);
+            let j = state.jacobian(robot.tool(), ReferenceFrame::World).unwrap();
             let rates = random.vector(robot.n());
             let s = j.mul_vec(&rates);
             let found = inverse::hyperbolic(&j, 0.1).unwrap();

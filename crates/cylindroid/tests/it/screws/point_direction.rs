@@ -72,8 +72,8 @@ fn arms_go_that_way() {
         for _ in 0..20 {
             let q = random.q(&robot);
             let state = robot.state(&q).unwrap();
-            let j = state.jacobian(robot.tool(), ReferenceFrame::World);
-            let at = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool()).translation;
+            let j = state.jacobian(robot.tool(), ReferenceFrame::World).unwrap();
+            let at = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool()).unwrap().translation;
             let (point, way) = (at(&q), random.vec3(1.0));
             let found = point_direction(&j, point, way).unwrap();
             let along = found.along.unwrap();
@@ -100,8 +100,8 @@ fn where_no_rates_go_that_way() {
         ([0.0, 0.0, 0.0], Vec3::Y, true, 2),
     ] {
         let state = robot.state(&q).unwrap();
-        let j = state.jacobian(robot.tool(), ReferenceFrame::World);
-        let point = state.pose(robot.tool()).translation;
+        let j = state.jacobian(robot.tool(), ReferenceFrame::World).unwrap();
+        let point = state.pose(robot.tool()).unwrap().translation;
         check(&j, point, way, reachable, still, 1e-13);
     }
 }

@@ -45,7 +45,7 @@ fn one_task_is_the_servo_of_the_object() {
         let q = assembled(&mechanism, 0.1, &mut random);
         let goal = assembled(&mechanism, 0.1, &mut random);
         let at = |q: &[f64]| {
-            mechanism.state(q).unwrap().pose(ServoOptions::new(&mechanism).end_effector)
+            mechanism.state(q).unwrap().pose(ServoOptions::new(&mechanism).end_effector).unwrap()
         };
         let target = Pose {
             translation: at(&q).translation + (at(&goal).translation - at(&q).translation) * 1e-3,
@@ -74,7 +74,7 @@ fn objects_reach_poses_with_loops_closed_and_noise() {
             let start = assembled(&mechanism, 0.0, &mut random);
             let goal = assembled(&mechanism, 0.12, &mut random);
             let end_effector = ServoOptions::new(&mechanism).end_effector;
-            let target = mechanism.state(&goal).unwrap().pose(end_effector);
+            let target = mechanism.state(&goal).unwrap().pose(end_effector).unwrap();
             let mut options = TaskServoOptions::new(&mechanism);
             (options.dt, options.acceleration) = (2e-3, 5.0);
             let tasks = vec![object(&mechanism, target)];
@@ -90,7 +90,7 @@ fn objects_reach_poses_with_loops_closed_and_noise() {
                     assert!(rate.abs() <= c.limits.velocity, "{}", c.name);
                 }
             }
-            let left = mechanism.state(&q).unwrap().pose(end_effector).error_to(target);
+            let left = mechanism.state(&q).unwrap().pose(end_effector).unwrap().error_to(target);
             let left = left.linear.norm() / mechanism.reach() + left.angular.norm();
             assert!(left < 1e-4 + 10.0 * noise, "{}, noise {noise}: {left:e}", mechanism.name());
         }
@@ -105,7 +105,7 @@ fn lower_levels_do_not_move_the_object() {
     let q = assemble(&mechanism, &q, &[]).unwrap().q;
     let state = mechanism.state(&q).unwrap();
     let end_effector = ServoOptions::new(&mechanism).end_effector;
-    let target = state.pose(end_effector);
+    let target = state.pose(end_effector).unwrap();
     let position = |target| {
         MotionTask::new(
             "object",
@@ -114,19 +114,19 @@ fn lower_levels_do_not_move_the_object() {
     };
     let link = mechanism.links()[mechanism.coordinates()[2].joint + 1].name.clone();
     let elbow = mechanism.frame(&link).unwrap();
-    let shifted = state.pose(elbow).translation + Vec3::new(0.03, 0.05, 0.02);
+    let shifted = state.pose(elbow).unwrap().translation + Vec3::new(0.03, 0.05, 0.02);
     let elbow = MotionTask::new(
         "elbow",
         TaskObjective::Frame {
             end_effector: elbow.into(),
             components: Task::POSITION,
-            target: Pose { translation: shifted, ..state.pose(elbow) }.into(),
+            target: Pose { translation: shifted, ..state.pose(elbow).unwrap() }.into(),
         },
     );
     let tasks = vec![position(target.into()), elbow.at_level(1)];
     let mut servo = TaskServo::new(&mechanism, tasks, TaskServoOptions::new(&mechanism)).unwrap();
     let result = servo.simulate(&q, 10.0, |_, q, _| {
-        let pose = mechanism.state(q).unwrap().pose(end_effector);
+        let pose = mechanism.state(q).unwrap().pose(end_effector).unwrap();
         // A curve in steps of a millisecond.
         assert!((pose.translation - target.translation).norm() < 1e-4);
     });
@@ -141,7 +141,7 @@ fn it_stops_before_type_ii_singularities() {
     let mechanism = catalogue::load("five-bar").unwrap();
     let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
     let end_effector = ServoOptions::new(&mechanism).end_effector;
-    let pose = mechanism.state(&q).unwrap().pose(end_effector);
+    let pose = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
     let (mut stopped, mut single) = (false, false);
     for direction in [Vec3::Y, Vec3::ZERO - Vec3::Y] {
         let target = Pose { translation: pose.translation + direction * 3.0, ..pose };

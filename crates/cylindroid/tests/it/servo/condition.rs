@@ -4,7 +4,8 @@ use super::*;
 
 /// The scaled Jacobian of whole poses.
 fn scaled(robot: &Mechanism, q: &[f64], length: f64) -> Matrix {
-    let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    let j =
+        robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
     Matrix::from_fn(6, j.cols(), |i, k| if i < 3 { j[(i, k)] / length } else { j[(i, k)] })
 }
 
@@ -19,7 +20,7 @@ fn singular_values_are_those_of_a_step_and_the_weakest_motion_needs_most() {
         let q = bent(&robot);
         let mut servo = servo(&robot, |_| ());
         let condition = servo.condition(&q).unwrap();
-        let step = servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
+        let step = servo.step(&q, robot.state(&q).unwrap().pose(robot.tool()).unwrap()).unwrap();
         assert!((condition.singular_ratio - step.singular_ratio).abs() < 1e-12);
         assert_eq!(condition.inverse.rank, step.rank);
         let length = robot.reach();
@@ -58,7 +59,7 @@ fn looking_at_a_posture_changes_no_motion() {
     for name in ["panda", "five-bar"] {
         let robot = catalogue::load(name).unwrap();
         let target = |s: &Servo| {
-            let pose = robot.state(robot.home()).unwrap().pose(s.options().end_effector);
+            let pose = robot.state(robot.home()).unwrap().pose(s.options().end_effector).unwrap();
             Pose { translation: pose.translation + Vec3::new(0.05, -0.02, 0.0), ..pose }
         };
         let mut plain = servo(&robot, |o| o.acceleration = 2.0);
@@ -130,7 +131,8 @@ fn self_motions_of_closed_chains_keep_their_loops() {
     let q = five_bar.integrate(five_bar.home(), &motions[0], h).unwrap();
     let gap = cylindroid::closure::LoopClosureError::of(&five_bar.state(&q).unwrap()).unwrap();
     assert!(gap.distance < 100.0 * h * h, "{gap:?}");
-    let x = |q: &[f64]| five_bar.state(q).unwrap().pose(five_bar.reference()).translation.x;
+    let x =
+        |q: &[f64]| five_bar.state(q).unwrap().pose(five_bar.reference()).unwrap().translation.x;
     assert!((x(&q) - x(five_bar.home())).abs() < 100.0 * h * h);
 }
 

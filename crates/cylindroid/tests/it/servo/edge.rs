@@ -28,7 +28,7 @@ fn to_the_edge_with(robot: &Mechanism, direction: Vec3, options: ServoOptions) -
     let (dt, length) = (options.dt, options.length);
     let mut servo = Servo::new(robot, options).unwrap();
     let mut q = robot.home().to_vec();
-    let mut target = robot.state(&q).unwrap().pose(robot.tool());
+    let mut target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     target.translation += direction * 1.5;
     let mut last = f64::INFINITY;
     let mut motion = ToTheEdge { time: f64::INFINITY, back: 0.0, left: 0.0, stall: None };

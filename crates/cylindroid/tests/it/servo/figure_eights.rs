@@ -18,7 +18,7 @@ struct Figures {
 /// first second counts.
 fn figure_eight(servo: &mut Servo, q: &mut [f64], axes: (Vec3, Vec3)) -> Figures {
     let (dt, w, size) = (servo.options().dt, std::f64::consts::TAU / 6.0, 0.08);
-    let pose = servo.mechanism().state(q).unwrap().pose(servo.mechanism().tool());
+    let pose = servo.mechanism().state(q).unwrap().pose(servo.mechanism().tool()).unwrap();
     let mut before = vec![0.0; servo.mechanism().n()];
     let steps = (12.0 / dt) as usize;
     let mut figures = Figures::default();
@@ -63,7 +63,7 @@ fn inverses_of_servos() {
             let mut random = Random(191);
             for k in 0..60 {
                 let mut q = within(&robot, &mut random);
-                let pose = robot.state(&q).unwrap().pose(robot.tool());
+                let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
                 let direction = [Vec3::X, Vec3::Y, Vec3::Z][k / 2 % 3] * [1.0, -1.0][k % 2];
                 let mut servo = Servo::new(&robot, options.clone()).unwrap();
                 let mut before = vec![0.0; robot.n()];
@@ -74,7 +74,7 @@ fn inverses_of_servos() {
             }
             for _ in 0..150 {
                 let mut q = random.q(&robot);
-                let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool());
+                let target = robot.state(&random.q(&robot)).unwrap().pose(robot.tool()).unwrap();
                 let mut servo = Servo::new(&robot, options.clone()).unwrap();
                 let mut before = vec![0.0; robot.n()];
                 for i in 1..=7500 {

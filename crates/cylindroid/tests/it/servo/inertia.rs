@@ -50,7 +50,7 @@ fn weights_follow_the_configuration() {
     for q in [[0.3, 0.8, -0.5, 0.9], [1.0, -0.7, 0.4, 0.2]] {
         let state = arm.state(&q).unwrap();
         let mass = state.mass_matrix();
-        let start = state.pose(arm.tool());
+        let start = state.pose(arm.tool()).unwrap();
         let target = Pose { translation: start.translation + Vec3::new(0.01, -0.02, 0.0), ..start };
         let weights = (0..4).map(|i| mass[(i, i)]).collect();
         let mut by_weights = servo(&arm, false, weights).unwrap();

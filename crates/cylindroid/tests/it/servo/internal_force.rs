@@ -20,7 +20,7 @@ fn two_arms_squeeze_a_box_that_rests() {
     let of_drives = |x: &[f64]| drives.iter().map(|&i| x[i]).collect::<Vec<f64>>();
     let law = InternalForceController::new(10.0, &of_drives(&stiffness)).unwrap();
     let desired: Vec<f64> = (0..14).map(|i| 8.0 * f64::from(i).sin()).collect();
-    let before = two_arm.state(&q).unwrap().pose(two_arm.reference());
+    let before = two_arm.state(&q).unwrap().pose(two_arm.reference()).unwrap();
     let (dt, mut first) = (0.01_f64, None);
     for step in 0..150 {
         let chain = ClosedChain::of(&two_arm.state(&q).unwrap(), None, None).unwrap();
@@ -57,7 +57,7 @@ fn two_arms_squeeze_a_box_that_rests() {
             }
         }
     }
-    let after = two_arm.state(&q).unwrap().pose(two_arm.reference());
+    let after = two_arm.state(&q).unwrap().pose(two_arm.reference()).unwrap();
     let moved = (after.translation - before.translation).norm();
     let most = drives.iter().map(|&i| (theta[i] - q[i]).abs()).fold(0.0, f64::max);
     println!("squeezed by up to {most:.1e} rad, the box moved by {moved:.1e} m");

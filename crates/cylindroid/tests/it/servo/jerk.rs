@@ -42,7 +42,7 @@ fn targets_are_reached_within_limits_of_the_jerk() {
     for dt in [1e-3, 4e-3] {
         let mut servo = servo(&robot, |o| o.dt = dt);
         let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
-        let start = robot.state(&q).unwrap().pose(robot.tool());
+        let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
         let mut velocities = Vec::new();
         for way in [Vec3::new(0.1, -0.2, 0.1), Vec3::new(-0.15, 0.1, -0.05), Vec3::ZERO] {
             let target = Pose { translation: start.translation + way, ..start };
@@ -132,7 +132,7 @@ fn positions_take_precedence_after_a_push() {
 fn many_tasks_keep_jerks() {
     let robot = panda();
     let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
-    let start = robot.state(&q).unwrap().pose(robot.tool());
+    let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(0.1, -0.2, 0.1), ..start };
     let objective = TaskObjective::Frame {
         end_effector: robot.tool().into(),
@@ -169,7 +169,7 @@ fn drives_of_closed_chains_keep_jerks() {
             }
         });
         let mut q = robot.home().to_vec();
-        let start = robot.state(&q).unwrap().pose(robot.reference());
+        let start = robot.state(&q).unwrap().pose(robot.reference()).unwrap();
         let target = Pose { translation: start.translation + way, ..start };
         let mut last = [vec![0.0; robot.n()], vec![0.0; robot.n()]];
         let (mut status, mut steps, mut most) = (Status::Moving, 0, 0.0_f64);

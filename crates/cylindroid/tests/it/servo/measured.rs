@@ -29,7 +29,7 @@ fn options(mechanism: &Mechanism, acceleration: f64) -> ServoOptions {
 }
 
 fn pose(mechanism: &Mechanism, q: &[f64]) -> Pose {
-    mechanism.state(q).unwrap().pose(mechanism.reference())
+    mechanism.state(q).unwrap().pose(mechanism.reference()).unwrap()
 }
 
 /// Seconds until the object stays within `near` (m) of the target, on an ideal robot whose encoders

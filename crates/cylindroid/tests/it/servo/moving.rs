@@ -9,7 +9,7 @@ fn start(name: &str, acceleration: f64) -> (Mechanism, Servo, Vec<f64>, Pose) {
     let servo = servo(&robot, |o| (o.dt, o.acceleration) = (DT, acceleration));
     let mut q = robot.home().to_vec();
     q.iter_mut().enumerate().for_each(|(i, x)| *x += 0.1 + 0.02 * i as f64);
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     (robot, servo, q, pose)
 }
 
@@ -21,7 +21,7 @@ fn the_lag_is_that_of_the_gain() {
     for feed_forward in [Vec3::ZERO, velocity] {
         let mut lag = f64::NAN;
         servo.reset();
-        let from = servo.mechanism().state(&q).unwrap().pose(servo.mechanism().tool());
+        let from = servo.mechanism().state(&q).unwrap().pose(servo.mechanism().tool()).unwrap();
         for i in 0..500 {
             let translation = from.translation + velocity * (f64::from(i) * DT);
             let feed_forward = Twist { linear: feed_forward, angular: Vec3::ZERO };
@@ -108,7 +108,7 @@ fn a_twist_outwards_is_a_stall() {
         let linear = pose.translation.unit(1e-9).unwrap() * 0.2;
         let mut status = Status::Moving;
         for _ in 0..(15.0 / DT) as usize {
-            let pose = robot.state(&q).unwrap().pose(robot.tool());
+            let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let feed_forward = Twist { linear, angular: Vec3::ZERO };
             status = servo.step(&q, Target { pose, feed_forward }).unwrap().status;
             servo.advance(&mut q);

@@ -61,11 +61,11 @@ fn objects_reach_poses_with_loops_closed() {
         for _ in 0..2 {
             let start = assembled(&mechanism, 0.0, &mut random);
             let goal = assembled(&mechanism, 0.15, &mut random);
-            let target = mechanism.state(&goal).unwrap().pose(mechanism.reference());
+            let target = mechanism.state(&goal).unwrap().pose(mechanism.reference()).unwrap();
             servo.reset();
             let outcome = ride(&mut servo, &start, target, 10.0);
             assert!(outcome.reached, "{}: {outcome:?}", mechanism.name());
-            let end = mechanism.state(&outcome.q).unwrap().pose(mechanism.reference());
+            let end = mechanism.state(&outcome.q).unwrap().pose(mechanism.reference()).unwrap();
             assert!((end.translation - target.translation).norm() <= 1e-4);
             assert!(end.rotation.angle_to(target.rotation) <= 1e-3);
         }
@@ -81,7 +81,8 @@ fn rates_keep_loops_closed() {
         let target = mechanism
             .state(&assembled(&mechanism, 0.1, &mut random))
             .unwrap()
-            .pose(mechanism.reference());
+            .pose(mechanism.reference())
+            .unwrap();
         let mut servo = Servo::new(&mechanism, ServoOptions::new(&mechanism)).unwrap();
         servo.step(&q, target).unwrap();
         assert!(
@@ -106,7 +107,7 @@ fn drift_is_corrected() {
         let mechanism = catalogue::load(name).unwrap();
         let mut random = Random(13);
         let mut q = assembled(&mechanism, 0.1, &mut random);
-        let target = mechanism.state(&q).unwrap().pose(mechanism.reference());
+        let target = mechanism.state(&q).unwrap().pose(mechanism.reference()).unwrap();
         q.iter_mut().for_each(|x| *x += random.within(-1e-4, 1e-4));
         let mut servo = Servo::new(&mechanism, ServoOptions::new(&mechanism)).unwrap();
         let open = gap(&mechanism, &q);
@@ -135,7 +136,7 @@ fn drives_move_with_the_least_weighted_effort() {
         options.joint_weights.clone_from(&weights);
         let mut servo = Servo::new(&two_arm, options).unwrap();
         let q = assembled(&two_arm, 0.1, &mut random);
-        let mut target = two_arm.state(&q).unwrap().pose(two_arm.reference());
+        let mut target = two_arm.state(&q).unwrap().pose(two_arm.reference()).unwrap();
         // Near enough for no limit to bite.
         target.translation.z += 1e-3;
         let step = servo.step(&q, target).unwrap();
@@ -157,7 +158,8 @@ fn drives_move_with_the_least_weighted_effort() {
         let jacobian = two_arm
             .state(&q)
             .unwrap()
-            .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned);
+            .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned)
+            .unwrap();
         let twist = jacobian.mul_vec(rates);
         assert!((twist[2] - 5e-3).abs() < 1e-9, "{twist:?}");
     }
@@ -173,7 +175,7 @@ fn redundancy_is_the_null_space() {
     let posture: Vec<f64> = q.iter().map(|x| x + 0.3).collect();
     options.secondary = vec![SecondaryTask::Posture { q: posture, gain: 1.0 }];
     let mut servo = Servo::new(&two_arm, options).unwrap();
-    let target = two_arm.state(&q).unwrap().pose(two_arm.reference());
+    let target = two_arm.state(&q).unwrap().pose(two_arm.reference()).unwrap();
     servo.step(&q, target).unwrap();
     let rates = servo.joint_velocities();
     assert!(rates.iter().any(|r| r.abs() > 1e-3), "{rates:?}");
@@ -181,6 +183,7 @@ fn redundancy_is_the_null_space() {
         .state(&q)
         .unwrap()
         .jacobian(two_arm.reference(), ReferenceFrame::LocalWorldAligned)
+        .unwrap()
         .mul_vec(rates);
     assert!(twist.iter().all(|x| x.abs() < 1e-7), "{twist:?}");
     // The gradient of a manipulability of the cut tree is refused by name.
@@ -206,7 +209,7 @@ fn unreachable_poses_end_with_a_cause() {
                 Task::POSITION
             };
             let mut servo = Servo::new(&mechanism, options).unwrap();
-            let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
+            let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference()).unwrap();
             target.translation += way;
             let outcome = ride(&mut servo, &start, target, 30.0);
             assert!(!outcome.reached && outcome.stall.is_some(), "{}", mechanism.name());
@@ -224,7 +227,7 @@ fn the_servo_stops_before_a_motion_escapes_the_drives() {
     options.task.components = [true, true, false, false, false, false];
     options.speed.linear = 1.0;
     let mut servo = Servo::new(&five_bar, options).unwrap();
-    let mut target = five_bar.state(&start).unwrap().pose(five_bar.reference());
+    let mut target = five_bar.state(&start).unwrap().pose(five_bar.reference()).unwrap();
     target.translation.y -= 2.0;
     let outcome = simulate(&mut servo, &start, 30.0, |_| (target.into(), true), |_| ()).unwrap();
     let Some(Stall::TypeII { share, direction }) = outcome.stall else {
@@ -234,7 +237,7 @@ fn the_servo_stops_before_a_motion_escapes_the_drives() {
     assert!(servo.is_stopped() && servo.joint_velocities().iter().all(|r| *r == 0.0));
     // Links 2-3 and 3-4 are nearly in line, and have not passed it; the tip escapes across them.
     let state = five_bar.state(&outcome.q).unwrap();
-    let at = |link: &str| state.pose(five_bar.frame(link).unwrap()).translation;
+    let at = |link: &str| state.pose(five_bar.frame(link).unwrap()).unwrap().translation;
     let (first, second) = (at("rod") - at("coupler"), at("rocker") - at("rod"));
     let bend = first.cross(second).z / (first.norm() * second.norm());
     let bend_at_home = -std::f64::consts::FRAC_1_SQRT_2;
@@ -259,7 +262,7 @@ fn weak_joints_keep_loops_closed() {
         let dt = options.dt;
         let mut servo = Servo::new(&mechanism, options).unwrap();
         let start = mechanism.home().to_vec();
-        let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
+        let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference()).unwrap();
         target.translation += Vec3::from_array(way);
         let (mut before, mut widest) = (start.clone(), 0.0_f64);
         let outcome = simulate(
@@ -288,7 +291,7 @@ fn weak_joints_slide_along_limits() {
     options.task = Task::POSITION;
     let mut servo = Servo::new(&mechanism, options).unwrap();
     let start = mechanism.home().to_vec();
-    let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference());
+    let mut target = mechanism.state(&start).unwrap().pose(mechanism.reference()).unwrap();
     target.translation = Vec3::new(0.05, 0.0, 0.05);
     let outcome = simulate(&mut servo, &start, 8.0, |_| (target.into(), true), |_| ()).unwrap();
     assert!(outcome.stall.is_some() && outcome.last.position_error < 0.415, "{outcome:?}");
@@ -317,7 +320,7 @@ fn no_step_jumps_across_a_type_ii_singularity() {
                 let mut options = ServoOptions::new(&mechanism);
                 (options.dt, options.acceleration) = (dt, acceleration);
                 let end_effector = options.end_effector;
-                let pose = mechanism.state(&q).unwrap().pose(end_effector);
+                let pose = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
                 let target = Pose { translation: pose.translation + Vec3::new(x, y, 0.0), ..pose };
                 let mut servo = Servo::new(&mechanism, options).unwrap();
                 let mut error = (target.translation - pose.translation).norm();
@@ -327,7 +330,7 @@ fn no_step_jumps_across_a_type_ii_singularity() {
                     10.0,
                     |_| (target.into(), true),
                     |sample| {
-                        let at = mechanism.state(sample.q).unwrap().pose(end_effector);
+                        let at = mechanism.state(sample.q).unwrap().pose(end_effector).unwrap();
                         let now = (target.translation - at.translation).norm();
                         // Nearer in every step, up to the braking of joints that were pushed.
                         assert!(now < error + 0.1, "({x}, {y}), dt {dt}, {acceleration}: {now}");

@@ -94,7 +94,7 @@ fn options(mechanism: &Mechanism, dt: f64) -> ServoOptions {
 }
 
 fn tool(mechanism: &Mechanism, q: &[f64]) -> Pose {
-    mechanism.state(q).unwrap().pose(mechanism.tool())
+    mechanism.state(q).unwrap().pose(mechanism.tool()).unwrap()
 }
 
 /// Largest excess over position limits and share of velocity limits while the tool is sent to poses
@@ -310,7 +310,7 @@ fn legs_keep_their_limits() {
             let mut servo = Servo::new(&mechanism, options).unwrap();
             let home = mechanism.home();
             let mut drives = Drives::new(home, plant);
-            let mut target = mechanism.state(home).unwrap().pose(mechanism.reference());
+            let mut target = mechanism.state(home).unwrap().pose(mechanism.reference()).unwrap();
             target.translation += Vec3::new(0.1, 0.1, 0.8);
             let mut beyond = f64::NEG_INFINITY;
             for _ in 0..400 {
@@ -388,7 +388,7 @@ fn tasks_keep_limits_too() {
             let mut beyond = 0.0_f64;
             for _ in 0..3 {
                 let of = |frame: EndEffector, way: Vec3| {
-                    let pose = mechanism.state(mechanism.home()).unwrap().pose(frame);
+                    let pose = mechanism.state(mechanism.home()).unwrap().pose(frame).unwrap();
                     let target = Pose { translation: pose.translation + way, ..pose }.into();
                     TaskObjective::Frame { end_effector: frame, components: Task::POSE, target }
                 };

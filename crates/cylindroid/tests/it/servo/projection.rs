@@ -33,14 +33,14 @@ fn rates_with(
         o.method = Method::Truncated { eps: 1e-9 };
         change(o);
     });
-    let pose = robot.state(q).unwrap().pose(robot.tool());
+    let pose = robot.state(q).unwrap().pose(robot.tool()).unwrap();
     let step = servo.step(q, Target { pose, feed_forward: twist }).unwrap();
     assert_eq!(step.saturation.scale, 1.0);
     servo.joint_velocities().to_vec()
 }
 
 fn world_jacobian(robot: &Mechanism, q: &[f64]) -> Matrix {
-    robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::World)
+    robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::World).unwrap()
 }
 
 fn assert_rates(got: &[f64], expected: &[f64]) {
@@ -57,7 +57,7 @@ fn rates_are_those_of_the_inverse() {
     let robot = youbot();
     let q = pitched(25.0);
     let j = world_jacobian(&robot, &q);
-    let tool = robot.state(&q).unwrap().pose(robot.tool()).translation;
+    let tool = robot.state(&q).unwrap().pose(robot.tool()).unwrap().translation;
     let seen = TWIST.at_point(-tool).to_array();
     let length = robot.reach();
     let scale = ScrewOptions::with_length(length);
@@ -92,7 +92,7 @@ fn rates_are_those_of_the_inverse() {
         assert_rates(&got, &expected.matrix.mul_vec(&seen));
     }
     // Given up: rolling about the tool's own axis, in three ways to say it.
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let roll = Twist { linear: Vec3::ZERO, angular: Vec3::Y };
     let aligned = Twist { linear: Vec3::ZERO, angular: pose.rotation * Vec3::Y };
     let world = pose.adjoint(roll);
@@ -141,7 +141,7 @@ fn rates_do_not_change_with_the_length() {
 #[test]
 fn youbot_converges_25_degrees_below_the_horizontal() {
     let robot = youbot();
-    let target = robot.state(&pitched(25.0)).unwrap().pose(robot.tool());
+    let target = robot.state(&pitched(25.0)).unwrap().pose(robot.tool()).unwrap();
     let start = [0.1, 0.5, 0.9, 0.3, -0.2];
     for projection in [
         TaskProjection::Hyperbolic { h: 0.1 },
@@ -162,7 +162,7 @@ fn youbot_converges_25_degrees_below_the_horizontal() {
 fn straight_down_there_is_none() {
     let robot = youbot();
     let down = pitched(90.0);
-    let mut pose = robot.state(&down).unwrap().pose(robot.tool());
+    let mut pose = robot.state(&down).unwrap().pose(robot.tool()).unwrap();
     pose.translation.z -= 0.03;
     let projection = TaskProjection::Hyperbolic { h: 0.1 };
     let mut alone = servo(&robot, |o| o.projection = projection.clone());
@@ -200,7 +200,7 @@ fn straight_down_there_is_none() {
 fn a_projection_may_be_too_large() {
     let robot = youbot();
     let q = pitched(89.0);
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let target = Target { pose, feed_forward: TWIST };
     let mut strict = servo(&robot, |o| o.projection = TaskProjection::Hyperbolic { h: 0.1 });
     assert_eq!(strict.step(&q, target).unwrap().status, Status::Stalled);
@@ -225,8 +225,8 @@ fn size_of_a_projection() {
     for (degrees, h) in [(25.0, 0.1), (60.0, -0.3), (89.0, 0.1)] {
         let q = pitched(degrees);
         let state = robot.state(&q).unwrap();
-        let (pose, length) = (state.pose(robot.tool()), robot.reach());
-        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let (pose, length) = (state.pose(robot.tool()).unwrap(), robot.reach());
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
         let scaled = Matrix::from_fn(6, 5, |i, c| j[(i, c)] / if i < 3 { length } else { 1.0 });
         let normal = ColumnSpace::of(&scaled, Threshold::Absolute(1e-9)).complement();
         let n: [f64; 6] = std::array::from_fn(|i| normal[(i, 0)]);
@@ -302,7 +302,7 @@ fn bad_projections_are_refused() {
     let own = Twist::from_array(j.column(0).try_into().unwrap());
     let own = TaskProjection::Oblique { complement: vec![own], reference: ReferenceFrame::World };
     let mut servo = servo(&robot, |o| o.projection = own);
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     servo.step(&q, Target { pose, feed_forward: TWIST }).unwrap();
     assert_eq!(servo.stall(), Stall::NoInverse(NoInverse::NotComplementary { order: 5, other: 1 }));
 }

@@ -21,11 +21,11 @@ fn random_starts_to_random_targets() {
         let mut reached = 0;
         for _ in 0..runs {
             let (from, to) = (random.q(&robot), random.q(&robot));
-            let target = robot.state(&to).unwrap().pose(robot.tool());
+            let target = robot.state(&to).unwrap().pose(robot.tool()).unwrap();
             let outcome = run_checked(&robot, &mut servo, &from, target);
             if outcome.reached {
                 reached += 1;
-                let end = robot.state(&outcome.q).unwrap().pose(robot.tool());
+                let end = robot.state(&outcome.q).unwrap().pose(robot.tool()).unwrap();
                 assert!((end.translation - target.translation).norm() <= 1e-4);
                 assert!(end.rotation.angle_to(target.rotation) <= 1e-3);
             } else {
@@ -59,11 +59,11 @@ fn a_reconfiguration_reaches_what_the_servo_does_not() {
         let (mut most, runs) = (0, 300);
         for _ in 0..runs {
             let (from, to) = (random.q(&robot), random.q(&robot));
-            let target = robot.state(&to).unwrap().pose(robot.tool());
+            let target = robot.state(&to).unwrap().pose(robot.tool()).unwrap();
             let found = find_reachable_configuration(&servo, &from, target, 200).unwrap();
             let found = found.unwrap_or_else(|| panic!("{name}: {to:?} not found"));
             assert_eq!(robot.outside_limits(&found.q).count(), 0);
-            let end = robot.state(&found.q).unwrap().pose(robot.tool());
+            let end = robot.state(&found.q).unwrap().pose(robot.tool()).unwrap();
             assert!((end.translation - target.translation).norm() <= 1e-6);
             assert!(end.rotation.angle_to(target.rotation) <= 1e-6);
             most = most.max(found.restarts);

@@ -77,7 +77,7 @@ fn rates_are_those_of_servo_and_inverse() {
     let robot = catalogue::load("youbot").unwrap();
     let q = bent(&robot);
     let state = robot.state(&q).unwrap();
-    let pose = state.pose(robot.tool());
+    let pose = state.pose(robot.tool()).unwrap();
     for projection in [TaskProjection::Orthogonal, TaskProjection::Hyperbolic { h: 0.1 }] {
         let method = Method::Truncated { eps: 1e-9 };
         let found = asked(&choice(&robot, method, projection.clone()), &robot);
@@ -97,7 +97,7 @@ fn rates_are_those_of_servo_and_inverse() {
         frame: robot.tool(),
         frame_from_tool: pose.inverse() * Pose { translation: POINT, ..pose },
     };
-    let j = state.jacobian(tool, ReferenceFrame::LocalWorldAligned);
+    let j = state.jacobian(tool, ReferenceFrame::LocalWorldAligned).unwrap();
     let length = robot.reach();
     let scale = |i: usize| if i < 3 { 1.0 / length } else { 1.0 };
     let scaled = Matrix::from_fn(6, 5, |i, k| scale(i) * j[(i, k)]);

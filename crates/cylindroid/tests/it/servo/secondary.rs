@@ -15,11 +15,11 @@ fn secondary_motion_stays_in_the_null_space() {
     };
     for q in [robot.home().to_vec(), aligned_wrist] {
         let state = robot.state(&q).unwrap();
-        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
         for _ in 0..20 {
             let desired = random.vector(7);
             let mut servo = servo(&robot, |o| o.method = Method::Truncated { eps: 0.05 });
-            servo.step_with(&q, state.pose(robot.tool()), &desired).unwrap();
+            servo.step_with(&q, state.pose(robot.tool()).unwrap(), &desired).unwrap();
             let rates = servo.joint_velocities().to_vec();
             let size: f64 = rates.iter().map(|r| r * r).sum::<f64>().sqrt();
             assert!(
@@ -37,14 +37,14 @@ fn retained_projector_disturbs_the_task_where_directions_were_cut() {
     // Stretched but for a little: the radial direction is cut.
     let q = [0.2, 1e-3, -2e-3];
     let state = robot.state(&q).unwrap();
-    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
     let disturbance = |projector| {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
             o.method = Method::Truncated { eps: 0.1 };
             o.null_space = projector;
         });
-        servo.step_with(&q, state.pose(robot.tool()), &[0.3, -1.0, 1.0]).unwrap();
+        servo.step_with(&q, state.pose(robot.tool()).unwrap(), &[0.3, -1.0, 1.0]).unwrap();
         let v = j.mul_vec(servo.joint_velocities());
         v[0].hypot(v[1])
     };
@@ -57,7 +57,7 @@ fn secondary_tasks_do_what_they_say() {
     let robot = catalogue::load("iiwa14").unwrap();
     let mut start = robot.home().to_vec();
     start[2] = 0.9;
-    let pose = robot.state(&start).unwrap().pose(robot.tool());
+    let pose = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
     let after = |secondary: SecondaryTask| {
         let mut servo = servo(&robot, |o| {
             o.secondary = vec![secondary];
@@ -85,7 +85,11 @@ fn secondary_tasks_do_what_they_say() {
     let q = after(SecondaryTask::Centring { gain: 1.0 });
     assert!(distance(&q, &[0.0; 7]) < distance(&start, &[0.0; 7]) - 0.1);
     let w = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let j = robot
+            .state(q)
+            .unwrap()
+            .jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+            .unwrap();
         Svd::of(&j).values().product::<f64>()
     };
     let q = after(SecondaryTask::Manipulability { gain: 100.0 });
@@ -102,7 +106,11 @@ fn secondary_manipulability_gradient_by_finite_differences() {
         axes: ReferenceFrame::LocalWorldAligned,
     };
     let w = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let j = robot
+            .state(q)
+            .unwrap()
+            .jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+            .unwrap();
         (0..4).map(|k| (j[(0, k)] / robot.reach()).powi(2)).sum::<f64>().sqrt()
     };
     let h = 1e-6;
@@ -119,9 +127,9 @@ fn secondary_manipulability_gradient_by_finite_differences() {
         o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
     });
     let state = robot.state(&q).unwrap();
-    servo.step(&q, state.pose(robot.tool())).unwrap();
+    servo.step(&q, state.pose(robot.tool()).unwrap()).unwrap();
     // The gradient, projected on the null space of the one row.
-    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+    let j = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
     let row: Vec<f64> = (0..4).map(|k| j[(0, k)]).collect();
     let norm2: f64 = row.iter().map(|x| x * x).sum();
     let along: f64 = row.iter().zip(gradient).map(|(r, g)| r * g).sum::<f64>() / norm2;
@@ -159,10 +167,10 @@ fn secondary_posture_of_spherical_and_free_joints() {
             }
             if kind == JointKind::Free {
                 q[..3].copy_from_slice(&random.vec3(1.0).to_array());
-                let here = robot.state(&q).unwrap().pose(robot.tool()).translation;
+                let here = robot.state(&q).unwrap().pose(robot.tool()).unwrap().translation;
                 posture[..3].copy_from_slice(&here.to_array());
             }
-            let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool());
+            let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool()).unwrap();
             let target = pose(&q);
             let mut servo = servo(&robot, |o| {
                 o.task = Task::POSITION;
@@ -196,7 +204,7 @@ fn secondary_manipulability_gradient_of_several_rows() {
             let scale = |c: usize| weights.get(c).map_or(1.0, |w| 1.0 / w.sqrt());
             let q: Vec<f64> = random.vector(7).iter().map(|x| 0.4 + 0.5 * x).collect();
             let scaled = |q: &[f64]| {
-                let j = robot.state(q).unwrap().jacobian(robot.tool(), task.axes);
+                let j = robot.state(q).unwrap().jacobian(robot.tool(), task.axes).unwrap();
                 let rows: Vec<usize> = (0..6).filter(|&i| task.components[i]).collect();
                 Matrix::from_fn(rows.len(), 7, |i, c| {
                     let length = if rows[i] < 3 { robot.reach() } else { 1.0 };
@@ -220,7 +228,7 @@ fn secondary_manipulability_gradient_of_several_rows() {
                 o.joint_weights = weights.clone();
                 o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
             });
-            servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
+            servo.step(&q, robot.state(&q).unwrap().pose(robot.tool()).unwrap()).unwrap();
             let size = servo.joint_velocities().iter().fold(0.0_f64, |m, r| m.max(r.abs()));
             assert!(size > 1e-6, "{round}: nothing to compare in {size:e}");
             for (c, expected) in expected.iter().enumerate() {
@@ -254,7 +262,7 @@ fn secondary_limit_avoidance_pushes_by_the_room_that_is_left() {
     {
         let q = [0.3, q, 2.0];
         servo.reset();
-        servo.step(&q, robot.state(&q).unwrap().pose(robot.tool())).unwrap();
+        servo.step(&q, robot.state(&q).unwrap().pose(robot.tool()).unwrap()).unwrap();
         assert!(
             (servo.joint_velocities()[1] - rate).abs() < 1e-12,
             "{q:?}: {:?}",

@@ -150,7 +150,7 @@ fn an_arm_keeps_the_surface() {
         let mut servo = servo(&robot, |_| {});
         let mut share =
             OperatorAuthority::new(AuthorityTimes { dt: 1e-3, fall: 0.1, rise: 0.5 }).unwrap();
-        let mut chain = Chain::new(&robot, robot.tool());
+        let mut chain = Chain::new(&robot, robot.tool()).unwrap();
         let mut q = robot.home().to_vec();
         let start = chain.set(&q);
         // Half a centimetre off and tilted by 0.05 rad.

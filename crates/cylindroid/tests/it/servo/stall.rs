@@ -65,7 +65,7 @@ fn stall_with_too_few_joints_says_so() {
     let robot = planar(2);
     let mut servo = servo(&robot, |o| o.task = Task::POSE);
     let q = [0.3, 0.9];
-    let start = robot.state(&q).unwrap().pose(robot.tool());
+    let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let up = Pose { translation: start.translation + Vec3::Z * 0.1, ..start };
     let outcome = run(&mut servo, &q, up);
     let Some(Stall::TooFewJoints { rank, task, direction }) = outcome.stall else {
@@ -81,7 +81,7 @@ fn stall_with_too_few_joints_says_so() {
 fn stall_of_a_five_joint_arm_is_not_called_singular() {
     let robot = catalogue::load("youbot").unwrap();
     let mut servo = servo(&robot, |o| o.task = Task::POINTING);
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(0.0, 0.1, 0.0), ..start };
     let outcome = run(&mut servo, robot.home(), target);
     let Some(Stall::TooFewJoints { rank, task, .. }) = outcome.stall else {
@@ -94,7 +94,7 @@ fn stall_of_a_five_joint_arm_is_not_called_singular() {
 #[test]
 fn stall_of_a_weak_inverse_is_slow() {
     let robot = catalogue::load("panda").unwrap();
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(0.05, 0.1, -0.1), ..start };
     for method in
         [Method::Damped { damping: 200.0 }, Method::SelectivelyDamped { max_joint_velocity: 1e-4 }]
@@ -170,7 +170,7 @@ fn stall_with_a_locked_joint() {
         let robot = b.build().unwrap();
         let mut servo = servo(&robot, |o| o.task = Task::POSITION);
         let q = [0.2, 0.9];
-        let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool());
+        let pose = |q: &[f64]| robot.state(q).unwrap().pose(robot.tool()).unwrap();
         // Round the first joint it goes.
         let outcome = run_checked(&robot, &mut servo, &q, pose(&[-0.8, 0.9]));
         assert!(outcome.reached, "{outcome:?}");

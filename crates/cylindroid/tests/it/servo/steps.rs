@@ -6,7 +6,7 @@ use super::*;
 fn reaches_a_pose_with_every_inverse() {
     for name in ["panda", "ur5e", "iiwa14", "puma560"] {
         let robot = catalogue::load(name).unwrap();
-        let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+        let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
         let target = Pose {
             rotation: Rpy { roll: 0.1, pitch: -0.15, yaw: 0.2 }.rotation() * start.rotation,
             translation: start.translation + Vec3::new(-0.05, 0.08, -0.06),
@@ -15,7 +15,7 @@ fn reaches_a_pose_with_every_inverse() {
             let mut servo = servo(&robot, |o| o.method = method);
             let outcome = run_checked(&robot, &mut servo, robot.home(), target);
             assert!(outcome.reached, "{name} {}: {outcome:?}", method.name());
-            let end = robot.state(&outcome.q).unwrap().pose(robot.tool());
+            let end = robot.state(&outcome.q).unwrap().pose(robot.tool()).unwrap();
             assert!((end.translation - target.translation).norm() <= 1e-6);
             assert!(end.rotation.angle_to(target.rotation) <= 1e-6);
         }
@@ -26,7 +26,7 @@ fn reaches_a_pose_with_every_inverse() {
 #[test]
 fn the_error_contracts_as_the_theory_says() {
     let robot = catalogue::load("panda").unwrap();
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(1e-5, -2e-5, 1e-5), ..start };
     let mut servo = servo(&robot, |o| {
         o.dt = 1e-2;
@@ -64,7 +64,7 @@ fn goes_through_the_wrist_singularity() {
     let robot = catalogue::load("ur5e").unwrap();
     let (mut from, mut to) = (robot.home().to_vec(), robot.home().to_vec());
     (from[4], to[4]) = (-0.3, 0.3);
-    let target = robot.state(&to).unwrap().pose(robot.tool());
+    let target = robot.state(&to).unwrap().pose(robot.tool()).unwrap();
     for method in [Method::Damped { damping: 0.05 }, Method::ALL[2], Method::ALL[3]] {
         let mut servo = servo(&robot, |o| o.method = method);
         let outcome = run_checked(&robot, &mut servo, &from, target);
@@ -80,14 +80,14 @@ fn any_number_of_joints() {
         let q: Vec<f64> = (0..n).map(|i| 0.3 - 0.05 * i as f64).collect();
         let goal: Vec<f64> = q.iter().map(|x| x + 0.1).collect();
         let mut servo = servo(&robot, |o| o.task = Task::POSITION);
-        let target = robot.state(&goal).unwrap().pose(robot.tool());
+        let target = robot.state(&goal).unwrap().pose(robot.tool()).unwrap();
         let outcome = run_checked(&robot, &mut servo, &q, target);
         assert!(outcome.reached, "{n} joints: {outcome:?}");
     }
     // One joint: along its own circle.
     let robot = planar(1);
     let mut one = servo(&robot, |_| {});
-    let target = robot.state(&[1.2]).unwrap().pose(robot.tool());
+    let target = robot.state(&[1.2]).unwrap().pose(robot.tool()).unwrap();
     assert!(run_checked(&robot, &mut one, &[0.1], target).reached);
     let mut nothing = ServoOptions::new(&robot);
     nothing.end_effector = robot.frame("link0").unwrap().into();
@@ -98,7 +98,7 @@ fn any_number_of_joints() {
 #[test]
 fn feed_forward_removes_the_lag() {
     let robot = catalogue::load("panda").unwrap();
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let velocity = Vec3::new(0.0, 0.1, -0.05);
     let lag = |feed_forward: bool| {
         let mut servo = servo(&robot, |_| {});
@@ -124,7 +124,7 @@ fn feed_forward_removes_the_lag() {
 fn bad_input_is_refused_and_leaves_the_servo() {
     let robot = catalogue::load("panda").unwrap();
     let mut servo = servo(&robot, |_| {});
-    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: pose.translation + Vec3::X * 0.01, ..pose };
     servo.step(robot.home(), target).unwrap();
     let rates = servo.joint_velocities().to_vec();
@@ -157,7 +157,7 @@ fn bad_input_is_refused_and_leaves_the_servo() {
 fn status_is_reached_at_the_target() {
     let robot = catalogue::load("panda").unwrap();
     let mut servo = servo(&robot, |_| {});
-    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let step = servo.step(robot.home(), pose).unwrap();
     assert_eq!(step.status, Status::Reached);
     assert!(servo.joint_velocities().iter().all(|r| r.abs() < 1e-12));
@@ -177,7 +177,7 @@ fn a_duration_of_nan_ends() {
 #[test]
 fn overflow_and_foreign_options_are_refused() {
     let robot = catalogue::load("panda").unwrap();
-    let pose = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let pose = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let mut servo = servo(&robot, |_| {});
     servo.step(robot.home(), pose * Pose::from_translation(Vec3::X * 0.01)).unwrap();
     let rates = servo.joint_velocities().to_vec();
@@ -218,7 +218,7 @@ fn overflow_and_foreign_options_are_refused() {
 #[test]
 fn weak_joints_arrive() {
     let robot = planar(1);
-    let target = robot.state(&[1.0]).unwrap().pose(robot.tool());
+    let target = robot.state(&[1.0]).unwrap().pose(robot.tool()).unwrap();
     for acceleration in [10.0, 1.0, 0.5, 1e-3] {
         for method in [Method::default(), Method::ALL[1], Method::ALL[4]] {
             let mut servo = servo(&robot, |o| {
@@ -246,7 +246,7 @@ fn weak_joints_arrive() {
     }
     // Seven joints, each weak: the way is not straight in joint space.
     let robot = catalogue::load("panda").unwrap();
-    let start = robot.state(robot.home()).unwrap().pose(robot.tool());
+    let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(-0.1, 0.2, -0.1), ..start };
     for acceleration in [10.0, 1.0, 0.5] {
         let mut servo = servo(&robot, |o| o.acceleration = acceleration);
@@ -259,10 +259,10 @@ fn weak_joints_arrive() {
 #[test]
 fn reached_means_at_rest() {
     let robot = planar(1);
-    let target = robot.state(&[1.0]).unwrap().pose(robot.tool());
+    let target = robot.state(&[1.0]).unwrap().pose(robot.tool()).unwrap();
     let mut servo = servo(&robot, |o| o.acceleration = 1.0);
     // Up to speed towards a target farther on, which is then exchanged for the place passed.
-    let far = robot.state(&[3.0]).unwrap().pose(robot.tool());
+    let far = robot.state(&[3.0]).unwrap().pose(robot.tool()).unwrap();
     let mut q = vec![0.0];
     while q[0] < 1.0 {
         servo.step(&q, far).unwrap();

@@ -106,7 +106,7 @@ fn scene(view: View) -> (Mechanism, TaskServo) {
     let before = own.state(&start(&own, 1.0)).unwrap();
     let frame = |name: &str| robot.frame(name).unwrap();
     let seen = |name: &str, way: Vec3| {
-        let pose = before.pose(own.frame(name).unwrap());
+        let pose = before.pose(own.frame(name).unwrap()).unwrap();
         Pose { translation: pose.translation + way, ..pose }
     };
     let left = TaskObjective::Frame {
@@ -265,7 +265,7 @@ fn objects_of_closed_chains_move_alike_on_any_foundation() {
         let drive = |robot: &Mechanism, foundation: Pose| {
             let reference = robot.reference();
             let mut q = assemble(robot, robot.home(), &[]).unwrap().q;
-            let before = robot.state(&q).unwrap().pose(reference);
+            let before = robot.state(&q).unwrap().pose(reference).unwrap();
             let target =
                 Pose { translation: before.translation + foundation.rotation * way, ..before };
             let objective = TaskObjective::Frame {
@@ -285,7 +285,7 @@ fn objects_of_closed_chains_move_alike_on_any_foundation() {
                 TaskServo::new(robot, vec![MotionTask::new("object", objective)], options).unwrap();
             let result = servo.simulate(&q, 3.0, |_, _, _| ()).unwrap();
             q.copy_from_slice(&result.q);
-            let after = robot.state(&q).unwrap().pose(reference).translation;
+            let after = robot.state(&q).unwrap().pose(reference).unwrap().translation;
             let way = foundation.rotation.inverse() * (after - before.translation);
             (q, way)
         };

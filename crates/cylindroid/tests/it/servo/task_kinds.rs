@@ -21,9 +21,13 @@ fn hand(robot: &Mechanism, components: Task, target: Pose) -> MotionTask {
 fn gradients_climb() {
     let robot = catalogue::load("panda").unwrap();
     let q = vec![0.4, -0.4, 0.3, -2.0, 0.9, 1.2, 2.7];
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let volume = |q: &[f64]| {
-        let j = robot.state(q).unwrap().jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
+        let j = robot
+            .state(q)
+            .unwrap()
+            .jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned)
+            .unwrap();
         Svd::of(&j).values().product::<f64>()
     };
     let nearest_limit = |q: &[f64]| {
@@ -45,7 +49,7 @@ fn gradients_climb() {
             servo.step(&moved).unwrap();
             servo.advance(&mut moved);
         }
-        let error = robot.state(&moved).unwrap().pose(robot.tool()).error_to(pose);
+        let error = robot.state(&moved).unwrap().pose(robot.tool()).unwrap().error_to(pose);
         assert!(error.linear.norm() < 1e-5 && error.angular.norm() < 1e-5);
         let (before, after) = match kind {
             0 => (volume(&q), volume(&moved)),
@@ -104,7 +108,7 @@ fn half_spaces_are_not_left() {
         for _ in 0..6 {
             let home: Vec<f64> =
                 robot.home().iter().map(|x| x + 0.1 * random.within(-1.0, 1.0)).collect();
-            let pose = robot.state(&home).unwrap().pose(robot.tool());
+            let pose = robot.state(&home).unwrap().pose(robot.tool()).unwrap();
             let center = Pose {
                 rotation: Rotation::exp(Vec3::new(0.3, random.within(-1.0, 1.0), 0.4)),
                 translation: pose.translation,
@@ -120,7 +124,7 @@ fn half_spaces_are_not_left() {
             let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
             let mut deepest = f64::INFINITY;
             let result = servo.simulate(&home, 30.0, |_, q, _| {
-                let tool = robot.state(q).unwrap().pose(robot.tool()).translation;
+                let tool = robot.state(q).unwrap().pose(robot.tool()).unwrap().translation;
                 for wall in &walls {
                     deepest = deepest.min(wall.normal.dot(tool - wall.point));
                 }
@@ -143,7 +147,7 @@ fn half_spaces_are_not_left() {
 fn a_start_outside_comes_back() {
     let robot = catalogue::load("panda").unwrap();
     let q = robot.home().to_vec();
-    let pose = robot.state(&q).unwrap().pose(robot.tool());
+    let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let wall = HalfSpace {
         name: "wall".to_owned(),
         end_effector: robot.tool().into(),
@@ -158,7 +162,8 @@ fn a_start_outside_comes_back() {
         let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
         let mut furthest = f64::NEG_INFINITY;
         let result = servo.simulate(&q, 20.0, |_, q, _| {
-            furthest = furthest.max(robot.state(q).unwrap().pose(robot.tool()).translation.x);
+            furthest =
+                furthest.max(robot.state(q).unwrap().pose(robot.tool()).unwrap().translation.x);
         });
         assert!(furthest < pose.translation.x + 1e-6);
         assert_eq!(result.unwrap().status == Status::Reached, reached);

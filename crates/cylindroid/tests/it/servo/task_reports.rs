@@ -130,7 +130,7 @@ fn a_task_that_limits_stop_does_not_slow_others() {
     let state = robot.state(&q).unwrap();
     let hand = |name: &str, way: Vec3| {
         let frame = robot.frame(name).unwrap();
-        let pose = state.pose(frame);
+        let pose = state.pose(frame).unwrap();
         let target = Pose { translation: pose.translation + way, ..pose };
         let objective = TaskObjective::Frame {
             end_effector: frame.into(),
@@ -162,7 +162,7 @@ fn a_target_that_moves_away_is_no_stall() {
     let robot = catalogue::load("panda").unwrap();
     let mut q = robot.home().to_vec();
     let end_effector = robot.tool().into();
-    let start = robot.state(&q).unwrap().pose(robot.tool());
+    let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
     let at = |way: f64| TaskObjective::Frame {
         end_effector,
         components: Task::POSITION,

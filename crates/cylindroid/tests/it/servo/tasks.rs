@@ -100,10 +100,10 @@ fn objectives(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<TaskObje
     };
     let mut masses = MassMatrix::new(robot);
     let center = masses.center_of_mass(&state, &mut Matrix::zeros(3, robot.n())).unwrap().1;
-    let relative = state.pose(right).inverse() * state.pose(left);
+    let relative = state.pose(right).unwrap().inverse() * state.pose(left).unwrap();
     vec![
-        frame(robot, "left_6_link", Task::POSE, beside(state.pose(left), near(0.05))),
-        frame(robot, "left_6_link", Task::POINTING, beside(state.pose(left), near(0.05))),
+        frame(robot, "left_6_link", Task::POSE, beside(state.pose(left).unwrap(), near(0.05))),
+        frame(robot, "left_6_link", Task::POINTING, beside(state.pose(left).unwrap(), near(0.05))),
         TaskObjective::RelativeFrame {
             end_effector: left.into(),
             reference: right.into(),
@@ -117,7 +117,7 @@ fn objectives(robot: &Mechanism, q: &[f64], random: &mut Random) -> Vec<TaskObje
         },
         TaskObjective::Gaze {
             end_effector: head.into(),
-            point: state.pose(head) * (Vec3::Z * 2.0) + near(0.2).linear,
+            point: state.pose(head).unwrap() * (Vec3::Z * 2.0) + near(0.2).linear,
         },
         TaskObjective::Custom(Box::new(Angle(3, q[3] + 0.1))),
     ]
@@ -186,8 +186,9 @@ fn lower_levels_do_not_disturb_higher_ones() {
             for step in 0..1500 {
                 servo.step(&q).unwrap();
                 let state = robot.state(&q).unwrap();
-                let pose = state.pose(end_effector);
-                let jacobian = state.jacobian(end_effector, ReferenceFrame::LocalWorldAligned);
+                let pose = state.pose(end_effector).unwrap();
+                let jacobian =
+                    state.jacobian(end_effector, ReferenceFrame::LocalWorldAligned).unwrap();
                 let twist = jacobian.mul_vec(servo.joint_velocities());
                 let error = pose.error_to(target.pose).to_array();
                 let difference = twist.iter().zip(error).map(|(v, e)| (v - gain * e).abs());

@@ -32,7 +32,7 @@ fn a_twist_is_followed_in_world_axes() {
             });
             let mut q = robot.home().to_vec();
             q.iter_mut().enumerate().for_each(|(i, x)| *x += 0.1 + 0.02 * i as f64);
-            let start = robot.state(&q).unwrap().pose(robot.tool());
+            let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let twist =
                 Twist { linear: Vec3::new(0.02, -0.03, 0.05), angular: Vec3::new(0.1, 0.05, -0.1) };
             let now = follow(&mut servo, &mut q, twist, 0.5);
@@ -43,7 +43,7 @@ fn a_twist_is_followed_in_world_axes() {
             for (a, b) in now.achieved.to_array().iter().zip(twist.to_array()) {
                 assert!((a - b).abs() < 1e-9, "{name}: {a} instead of {b}");
             }
-            let end = robot.state(&q).unwrap().pose(robot.tool());
+            let end = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
             let moved = end.translation - start.translation - twist.linear * 0.5;
             assert!(moved.norm() < 2e-3, "{name}: {moved:?}");
         }
@@ -94,8 +94,10 @@ fn pushed_outwards_it_stalls_and_says_why() {
     for acceleration in [f64::INFINITY, 40.0] {
         let mut servo = servo(&ur5e, |o| (o.dt, o.acceleration) = (DT, acceleration));
         let mut q = vec![0.0, -1.0, 1.2, -0.4, 1.3, 0.2];
-        let out =
-            linear(ur5e.state(&q).unwrap().pose(ur5e.tool()).translation.unit(1e-9).unwrap() * 0.2);
+        let out = linear(
+            ur5e.state(&q).unwrap().pose(ur5e.tool()).unwrap().translation.unit(1e-9).unwrap()
+                * 0.2,
+        );
         let now = follow(&mut servo, &mut q, out, 8.0);
         assert_eq!(now.status, TwistStatus::Stalled, "{acceleration}: {now:?}");
         assert!(matches!(servo.stall(), Stall::Singular { .. }), "{:?}", servo.stall());

@@ -42,9 +42,9 @@ fn erratum_twist_is_rotated_into_the_end_effector() {
     let robot = catalogue::load("panda").unwrap();
     let q: Vec<f64> = robot.home().iter().map(|q| q + 0.2).collect();
     let state = robot.state(&q).unwrap();
-    let base = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned);
-    let tool = state.jacobian(robot.tool(), ReferenceFrame::Local);
-    let r = state.pose(robot.tool()).rotation.matrix().to_rows();
+    let base = state.jacobian(robot.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
+    let tool = state.jacobian(robot.tool(), ReferenceFrame::Local).unwrap();
+    let r = state.pose(robot.tool()).unwrap().rotation.matrix().to_rows();
     // eRb is the transpose of the rotation of the tool seen from the base.
     let turn = Matrix::from_fn(6, 6, |i, j| if i / 3 == j / 3 { r[j % 3][i % 3] } else { 0.0 });
     assert_matrix("v_ee", &tool, &(&turn * &base), 1e-14);

@@ -7,10 +7,10 @@ calls! {
     ik::Analytic::geometry;
     ik::Analytic::is_exact;
     ik::Analytic::locked;
-    ik::Analytic::of = |m: &'static Mechanism, of: EndEffector| owned(m, of).then(|| Analytic::of(m, of).ok()).flatten();
+    ik::Analytic::of = |m: &'static Mechanism, of: EndEffector| Analytic::of(m, of).ok();
     ik::Analytic::solve;
     ik::Analytic::with_full_turns;
-    ik::Analytic::with_locked = |m: &'static Mechanism, of: EndEffector, locked: &'static [usize]| { owned(m, of).then(|| Analytic::with_locked(m, of, locked).ok()).flatten() };
+    ik::Analytic::with_locked = |m: &'static Mechanism, of: EndEffector, locked: &'static [usize]| Analytic::with_locked(m, of, locked).ok();
     ik::AnalyticSolutions::is_open;
     ik::Criterion::by_name = |name: &'static str, of: EndEffector, task: Task| ik::Criterion::by_name(name, of, task);
     ik::Criterion::name;

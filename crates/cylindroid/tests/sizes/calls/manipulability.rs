@@ -50,7 +50,7 @@ calls! {
     manipulability::Stiffness::eigenscrews;
     manipulability::Stiffness::of;
     manipulability::actuated_inertia;
-    manipulability::body_inertia = |s: &'static State, of: FrameId| { s.mechanism().check_frame(of).is_ok().then(|| manipulability::body_inertia(s, of)).flatten() };
+    manipulability::body_inertia = |s: &'static State, of: FrameId| manipulability::body_inertia(s, of);
     manipulability::force_polytope;
     manipulability::force_range;
     manipulability::gradient;

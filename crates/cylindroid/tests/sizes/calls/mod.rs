@@ -58,11 +58,6 @@ mod prelude {
         let links = |m: &Mechanism| (m.name().to_owned(), m.joints().to_vec());
         links(c.mechanism()) == links(s.mechanism())
     }
-
-    /// True if the frame is one of the mechanism, as calls without errors require.
-    pub(super) fn owned(m: &Mechanism, of: EndEffector) -> bool {
-        m.check_frame(of.frame).is_ok()
-    }
 }
 
 /// What a result holds in its fields.

@@ -181,7 +181,7 @@ impl Entry {
         Ok(match self.checked_kind()? {
             "frame" => {
                 let end_effector = frame()?;
-                let (pose, components) = self.target(start.pose(end_effector), robot)?;
+                let (pose, components) = self.target(start.pose(end_effector)?, robot)?;
                 let twist = Twist {
                     linear: Vec3::from_array(self.velocity.unwrap_or_default()),
                     angular: Vec3::from_array(self.angular_velocity.unwrap_or_default()),
@@ -193,7 +193,7 @@ impl Entry {
                 let end_effector = frame()?;
                 let name = self.reference.clone().unwrap_or_default();
                 let reference = EndEffector::from(robot.frame(&name)?);
-                let seen = start.pose(reference).inverse() * start.pose(end_effector);
+                let seen = start.pose(reference)?.inverse() * start.pose(end_effector)?;
                 let (target, components) = self.target(seen, robot)?;
                 (
                     TaskObjective::RelativeFrame { end_effector, reference, components, target },

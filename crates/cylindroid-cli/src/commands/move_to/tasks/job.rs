@@ -135,7 +135,7 @@ fn tasks(
     if is_given || (frames.is_empty() && args.tasks.tasks.is_none()) {
         let end_effector = end_effector(robot, &args.frame)?;
         let (components, _) = task(target, None, robot)?;
-        let from = state.pose(end_effector);
+        let from = state.pose(end_effector)?;
         let other = ", with --task FRAME=X,Y,Z or with --tasks FILE.toml";
         let pose = target_pose(target, from, degrees, other)?;
         let name = robot.frame_of(end_effector.frame).name.clone();

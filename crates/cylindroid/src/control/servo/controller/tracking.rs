@@ -24,7 +24,7 @@ impl Servo {
     /// let stewart = cylindroid::load("stewart")?;
     /// let mut servo = Servo::new(&stewart, ServoOptions::new(&stewart))?;
     /// let mut legs: Vec<f64> = stewart.actuated().map(|i| stewart.home()[i]).collect();
-    /// let mut target = stewart.state(stewart.home())?.pose(stewart.reference());
+    /// let mut target = stewart.state(stewart.home())?.pose(stewart.reference())?;
     /// target.translation = target.translation + Vec3::Z * 0.02;
     /// for _ in 0..1000 {
     ///     servo.step_actuated(&legs, target)?;
@@ -33,7 +33,7 @@ impl Servo {
     ///         *leg += servo.joint_velocities()[i] * dt;
     ///     }
     /// }
-    /// let here = stewart.state(servo.configuration())?.pose(stewart.reference());
+    /// let here = stewart.state(servo.configuration())?.pose(stewart.reference())?;
     /// assert!((here.translation - target.translation).norm() < 1e-3);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```

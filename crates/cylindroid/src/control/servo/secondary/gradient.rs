@@ -30,7 +30,7 @@ impl SecondaryVelocities {
         (end_effector, task): (EndEffector, Task),
         length: f64,
     ) -> Self {
-        let chain = Chain::new(mechanism, end_effector);
+        let chain = Chain::of(mechanism, end_effector);
         Self::over(mechanism, chain, task, length)
     }
 
