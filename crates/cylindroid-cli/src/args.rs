@@ -173,6 +173,11 @@ pub(crate) struct JacobianArgs {
     #[arg(long, value_name = "NAME", default_value = "local_world_aligned")]
     pub(crate) reference: ReferenceName,
 
+    /// The twist relative to this frame, which may move: joints that carry both do not count. Its
+    /// point is the frame's origin, its axes are those of the other frame
+    #[arg(long, value_name = "FRAME", conflicts_with_all = ["reference", "analytical", "velocities"])]
+    pub(crate) relative_to: Option<String>,
+
     /// Angle rates instead of an angular velocity in the last three rows [rad/s], world axes
     #[arg(long, value_name = "ANGLES", conflicts_with_all = ["reference", "velocities"])]
     pub(crate) analytical: Option<Angles>,

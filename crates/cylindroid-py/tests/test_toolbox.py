@@ -209,12 +209,62 @@ def test_frames_at_rest_and_options_of_searches():
     q, base = robot.qr, robot.mechanism.frames[0]
     T = robot.fkine(q, None, "link4")
     np.testing.assert_allclose(robot.fkine(q, "link4") @ T, robot.fkine(q), atol=1e-15)
-    np.testing.assert_array_equal(robot.jacob0(q, None, base), robot.jacob0(q))
+    np.testing.assert_allclose(robot.jacob0(q, None, base), robot.jacob0(q), atol=1e-15)
     found = robot.ikine_LM(T := robot.fkine(q), None, base, q, 30, 100, 1e-6, None, True, 0, k=0.1,
                            method="sugihara")
     assert found.success
     np.testing.assert_allclose(robot.fkine(found.q), T, atol=1e-5)
     assert robot.ik_NR(T, None, base, q, 30, 100, 1e-6, None, True, pinv=True)[1] == 1
+    # The same by place: k and method, and those of a Newton-Raphson search.
+    assert robot.ik_LM(T, None, base, q, 30, 100, 1e-6, None, True, 0.1, "sugihara")[1] == 1
+    assert robot.ik_NR(T, None, base, q, 30, 100, 1e-6, None, True, True, 0.0)[1] == 1
+    assert robot.ikine_LM(T, None, base, q, 30, 100, 1e-6, None, True, 0, 1.0, "chan", 0.0).success
+
+
+def test_frames_that_move():
+    """Relative to a link of the arm, in its axes: the derivative of the pose as seen from it."""
+    robot = Robot("panda")
+    q, step = robot.qr, 1e-6
+    found = robot.jacob0(q, None, "link3")
+    assert not found[:, :3].any() and found[:, 3:].any(axis=0).all()
+    here = robot.fkine(q, None, "link3")
+    for i in range(7):
+        ends = [robot.fkine(q + s * step * np.eye(7)[i], None, "link3") for s in (1, -1)]
+        slope = (ends[0] - ends[1]) / (2 * step)
+        turn = slope[:3, :3] @ here[:3, :3].T
+        expected = [*slope[:3, 3], turn[2, 1], turn[0, 2], turn[1, 0]]
+        np.testing.assert_allclose(found[:, i], expected, atol=1e-8)
+    own = np.kron(np.eye(2), here[:3, :3].T) @ found
+    np.testing.assert_allclose(robot.jacobe(q, None, "link3"), own, atol=1e-15)
+    assert robot.jacobe(np.stack([q, q]), None, "link3").shape == (2, 6, 7)
+
+
+def test_measures_and_derivatives_take_the_arguments_of_the_toolbox():
+    robot = Robot("panda")
+    q, tool = robot.qr, translation("z", 0.1)
+    values = np.linalg.svd(robot.jacob0(q), compute_uv=False)
+    assert abs(robot.manipulability(q, None, None, None, "minsingular") - values[-1]) < 1e-14
+    inverse = robot.manipulability(q, method="invcondition")
+    assert abs(inverse - values[-1] / values[0]) < 1e-14
+    H = robot.hessian0(q, None, None, robot.jacob0(q), tool)
+    np.testing.assert_array_equal(H, robot.hessian0(q, tool=tool))
+    assert np.abs(H - robot.hessian0(q)).max() > 1e-3
+    R = robot.fkine(q)[:3, :3].T
+    for own, world in zip(robot.hessiane(q, tool=tool), H):
+        np.testing.assert_allclose(own, np.kron(np.eye(2), R) @ world, atol=1e-14)
+    gradient = robot.jacobm(q, None, None, None, None, "trans")
+    assert gradient.shape == (7, 1) and np.abs(gradient - robot.jacobm(q)).max() > 1e-3
+
+
+def test_poses_without_the_base():
+    base = rotation("y", 0.4) @ translation("x", 0.3)
+    links = [DHLink(0.0, 0.1, 0.3, 0.2), DHLink(0.0, 0.1, 0.3, 0.2)]
+    robot, table = Robot(Table(links, base=pose(base))), Table(links)
+    q = np.array([0.3, -0.5])
+    np.testing.assert_allclose(robot.fkine(q, include_base=False), table.fkine(q), atol=1e-14)
+    np.testing.assert_allclose(robot.fkine(q), base @ table.fkine(q), atol=1e-14)
+    panda = Robot("panda")
+    np.testing.assert_array_equal(panda.fkine(panda.qr, include_base=False), panda.fkine(panda.qr))
 
 
 def test_pictures():
@@ -240,7 +290,21 @@ def test_what_is_missing_says_what_to_use():
     with pytest.raises(TypeError, match="no argument 'speed'"):
         robot.ik_LM(robot.fkine(robot.qr), speed=2)
     with pytest.raises(NotImplementedError, match="link4' moves"):
-        robot.jacob0(robot.qr, start="link4")
+        robot.jacob0_analytical(robot.qr, start="link4")
+    with pytest.raises(NotImplementedError, match="second derivative"):
+        robot.partial_fkine0
+    with pytest.raises(NotImplementedError, match="pass q"):
+        robot.hessian0(J0=np.zeros((6, 7)))
+    with pytest.raises(NotImplementedError, match="pass q"):
+        robot.manipulability(J=np.zeros((6, 7)))
+    with pytest.raises(NotImplementedError, match="pass q"):
+        robot.jacobm(J=np.zeros((6, 7)))
+    with pytest.raises(NotImplementedError, match="without representation"):
+        robot.jacob0_dot(robot.qr, robot.qz, representation="eul")
+    with pytest.raises(NotImplementedError, match="'asada'"):
+        robot.manipulability(robot.qr, method="asada")
+    with pytest.raises(TypeError, match="six options"):
+        robot.ik_NR(robot.fkine(robot.qr), None, None, None, 30, 100, 1e-6, None, True, *range(7))
     with pytest.raises(ValueError, match="'xyz': one of rpy/xyz, rpy/zyx, eul, exp"):
         robot.jacob0_analytical(robot.qr, "xyz")
     assert not hasattr(robot, "rne") and not hasattr(robot, "other")

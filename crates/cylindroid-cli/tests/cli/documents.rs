@@ -117,6 +117,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "jacobian" => vec![
             vec!["ur5e", "--velocities", "shoulder_pan_joint=0.1"],
             vec!["ur5e", "--analytical", "zyz"],
+            vec!["panda", "--relative-to", "link4"],
             vec!["youbot", "--twist", "x", "--eps", "1e-6"],
         ],
         "ik" => vec![

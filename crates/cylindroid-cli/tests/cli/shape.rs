@@ -136,6 +136,18 @@ fn jacobian_has_a_derivative_and_analytical_rates() {
     assert_eq!(report["analytical"]["exists"], true);
     let gimbal_lock = json(&["jacobian", "panda", "--analytical", "zyz"], 0);
     assert_eq!(gimbal_lock["analytical"]["exists"], false, "the tool points straight down");
+    // Four joints carry both.
+    let relative = json(&["jacobian", "panda", "--relative-to", "link4"], 0);
+    assert_eq!(
+        (&relative["reference"], &relative["relative_to"]),
+        (&"relative".into(), &"link4".into())
+    );
+    for row in relative["matrix"].as_array().unwrap() {
+        assert_eq!(numbers(row)[..4], [0.0; 4]);
+    }
+    assert_eq!(relative["rank"], 3);
+    let shown = text(&["jacobian", "panda", "--relative-to", "link4"]);
+    assert!(shown.contains("the frame's origin, axes of 'link4', relative to it"), "{shown}");
 }
 
 #[test]

@@ -884,6 +884,13 @@ class Mechanism:
         tool: ArrayLike | None = None,
         out: _Array | None = None,
     ) -> _Array: ...
+    def relative_jacobian(
+        self,
+        q: ArrayLike,
+        base: str,
+        frame: str | None = None,
+        tool: ArrayLike | None = None,
+    ) -> _Array: ...
     def hessian(
         self,
         q: ArrayLike,

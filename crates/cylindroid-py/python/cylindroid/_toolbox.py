@@ -29,7 +29,7 @@ INSTEAD = {
     "inertia r": "Mechanism.mass_matrix",
     "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
     "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
-    "partial_fkine0": "Mechanism.hessian",
+    "partial_fkine0": "Mechanism.hessian, the second derivative; higher ones are not here",
     "links link_dict dfs_links hierarchy showgraph dotfile nlinks nbranches": "Mechanism.joints and "
     "Mechanism.links",
     "base base_link tool ee_links": "Mechanism.frames, and tool= of fkine and jacob0",
@@ -57,7 +57,8 @@ def instead_of(name: str) -> str | None:
     return next(found, None)
 
 
-_ROOT = "base of the links"
+#: The link that the base of a robot carries.
+ROOT = "base of the links"
 _AXES = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}
 
 
@@ -88,7 +89,7 @@ def mechanism_of(robot: Any) -> tuple[Mechanism, str]:
             joints.fixed(last, hand.parent.name, last, _matrix(hand.A()))
         else:
             last = robot.ee_links[0].name
-    joints.fixed(f"{robot.name}: base", "world", _ROOT, _matrix(robot.base))
+    joints.fixed(f"{robot.name}: base", "world", ROOT, _matrix(robot.base))
     frame = f"{robot.name}: tool"
     joints.fixed(frame, last, frame, tool)
     mechanism = parse(joints.urdf(str(robot.name)), "urdf")
@@ -105,7 +106,7 @@ class _Joints:
     """Joints of a URDF."""
 
     def __init__(self) -> None:
-        self.links = [_ROOT]
+        self.links = [ROOT]
         self.moving: list[tuple[int, str, str]] = []
         self.rigid: list[str] = []
 
@@ -171,7 +172,7 @@ def _matrix(pose: Any) -> NDArray[np.float64]:
 def _of_transforms(links: list[Any]) -> _Joints:
     joints = _Joints()
     for link in links:
-        parent = _ROOT if link.parent is None else link.parent.name
+        parent = ROOT if link.parent is None else link.parent.name
         pose = _matrix(link.A(0.0) if link.isjoint else link.A())
         if link.isjoint:
             kind, sign = str(link.v.kind), -1 if link.v.isflip else 1
@@ -184,7 +185,7 @@ def _of_transforms(links: list[Any]) -> _Joints:
 def _of_table(links: list[Any]) -> tuple[_Joints, str, NDArray[np.float64]]:
     """The joints, the last link and the pose of its end."""
     joints = _Joints()
-    name, pose = _ROOT, np.eye(4)
+    name, pose = ROOT, np.eye(4)
     for i, link in enumerate(links):
         theta, d, a, alpha = (float(getattr(link, x)) for x in ("theta", "d", "a", "alpha"))
         offset = float(link.offset)

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import InvalidOptionError, Mechanism, load
-from ._toolbox import SEARCH, NotHere, instead_of, is_toolbox_robot, mechanism_of
+from ._toolbox import ROOT, SEARCH, NotHere, instead_of, is_toolbox_robot, mechanism_of
 
 __all__ = ["IKSolution", "Robot"]
 
@@ -63,6 +63,13 @@ class IKSolution:
     reason: str
 
 
+def _seen(pose: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Twists, (..., 6, n), in the axes of a pose, (..., 4, 4)."""
+    axes = np.zeros((*pose.shape[:-2], 6, 6))
+    axes[..., :3, :3] = axes[..., 3:, 3:] = np.swapaxes(pose[..., :3, :3], -1, -2)
+    return axes @ twists
+
+
 class Robot:
     """A mechanism with the methods of the Toolbox.
 
@@ -84,10 +91,13 @@ class Robot:
     def __init__(self, robot: Mechanism | str | os.PathLike[str] | Any) -> None:
         #: Named configurations, (n,) each.
         self.configs: dict[str, NDArray[np.float64]] = {}
+        #: The frame that poses without the base are relative to; None for the world.
+        self._base: str | None = None
         if isinstance(robot, Mechanism):
             self.mechanism, self._end = robot, robot.tool
         elif is_toolbox_robot(robot):
             self.mechanism, self._end = mechanism_of(robot)
+            self._base = ROOT
             configs = getattr(robot, "configs", None) or {}
             self.configs = {name: np.array(q, dtype=float) for name, q in configs.items()}
         else:
@@ -210,26 +220,33 @@ class Robot:
         end: str | None = None,
         start: str | None = None,
         tool: ArrayLike | None = None,
+        include_base: bool = True,
     ) -> NDArray[np.float64]:
         """The pose of the end effector, (4, 4) or (N, 4, 4): `Mechanism.fk`.
 
-        With `start` that in this frame.
+        With `start` that in this frame; without the base that in the frame of the first link.
         """
         pose = self.mechanism.fk(q, end or self._end, tool)
+        if start is None and not include_base:
+            start = self._base
         return pose if start is None else np.linalg.solve(self.mechanism.fk(q, start), pose)
 
     def fkine_all(self, q: ArrayLike) -> NDArray[np.float64]:
         """The poses of all frames, in the order of `Mechanism.frames`: `Mechanism.fk_all`."""
         return self.mechanism.fk_all(q)
 
-    def _from_base(self, start: str | None) -> None:
-        """Raises if `start` is not the base: velocities are relative to the world."""
+    def _is_fixed(self, start: str) -> bool:
+        """True for a frame that no joint moves."""
+        return not np.any(self.mechanism.jacobian(self.qr, start))
+
+    def _from_base(self, start: str | None, what: str) -> None:
+        """Raises if `start` is not the base, for what is relative to the world alone."""
         if start is None:
             return
         turned = np.any(self.mechanism.fk(self.qr, start)[:3, :3] != np.eye(3))
-        if turned or np.any(self.mechanism.jacobian(self.qr, start)):
+        if turned or not self._is_fixed(start):
             raise NotHere(
-                f"start = {start!r} moves or is turned: Jacobians have the axes of the world here"
+                f"start = {start!r} moves or is turned: {what} has the axes of the world here"
             )
 
     def jacob0(
@@ -239,8 +256,13 @@ class Robot:
         start: str | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Jacobian in world axes, (6, n) or (N, 6, n), linear rows first."""
-        self._from_base(start)
+        """The Jacobian in world axes, (6, n) or (N, 6, n), linear rows first.
+
+        With `start` that relative to this frame, in its axes: `Mechanism.relative_jacobian`. Unlike in
+        the Toolbox, n is the number of all joints; those before `start` have zeros.
+        """
+        if start is not None:
+            return self.mechanism.relative_jacobian(q, start, end or self._end, tool)
         return self.mechanism.jacobian(q, end or self._end, "local_world_aligned", tool)
 
     def jacobe(
@@ -250,25 +272,60 @@ class Robot:
         start: str | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n)."""
-        self._from_base(start)
+        """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n); as `jacob0`."""
+        if start is not None:
+            return _seen(self.fkine(q, end, start, tool), self.jacob0(q, end, start, tool))
         return self.mechanism.jacobian(q, end or self._end, "local", tool)
 
-    def hessian0(self, q: ArrayLike, end: str | None = None) -> NDArray[np.float64]:
-        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n)."""
-        return self.mechanism.hessian(q, end or self._end, "local_world_aligned")
+    def hessian0(
+        self,
+        q: ArrayLike | None = None,
+        end: str | None = None,
+        start: str | None = None,
+        J0: ArrayLike | None = None,
+        tool: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n).
 
-    def hessiane(self, q: ArrayLike, end: str | None = None) -> NDArray[np.float64]:
-        """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n)."""
-        R = self.fkine(q, end)[..., :3, :3]
-        axes = np.zeros((*R.shape[:-2], 1, 6, 6))
-        axes[..., 0, :3, :3] = axes[..., 0, 3:, 3:] = np.swapaxes(R, -1, -2)
-        return axes @ self.hessian0(q, end)
+        From q; a Jacobian `J0` beside it changes nothing. `start` is the base.
+        """
+        if q is None:
+            raise NotHere("the Hessian of a Jacobian alone is not in cylindroid.rtb; pass q")
+        self._from_base(start, "the Hessian")
+        return self.mechanism.hessian(q, end or self._end, "local_world_aligned", tool)
+
+    def hessiane(
+        self,
+        q: ArrayLike | None = None,
+        end: str | None = None,
+        start: str | None = None,
+        Je: ArrayLike | None = None,
+        tool: ArrayLike | None = None,
+    ) -> NDArray[np.float64]:
+        """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n); as `hessian0`."""
+        found = self.hessian0(q, end, start, Je, tool)
+        return _seen(self.fkine(q, end, tool=tool)[..., None, :, :], found)
 
     def jacob0_dot(
-        self, q: ArrayLike, qd: ArrayLike, end: str | None = None
+        self,
+        q: ArrayLike,
+        qd: ArrayLike,
+        J0: ArrayLike | None = None,
+        representation: str | None = None,
+        *,
+        end: str | None = None,
     ) -> NDArray[np.float64]:
-        """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`."""
+        """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`.
+
+        A Jacobian `J0` beside q changes nothing.
+        """
+        if representation is not None:
+            raise NotHere(
+                "the derivative of an analytical Jacobian is not in cylindroid.rtb; without "
+                "representation it is that of the geometric one"
+            )
+        if q is None:
+            raise NotHere("the derivative of a Jacobian alone is not in cylindroid.rtb; pass q")
         return self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
 
     def jacob0_analytical(
@@ -294,7 +351,7 @@ class Robot:
         tool : array_like, (4, 4), optional
             A point on it.
         """
-        self._from_base(start)
+        self._from_base(start, "the analytical Jacobian")
         angles = {"rpy/xyz": "xyz", "rpy/zyx": "rpy", "eul": "zyz", "exp": "rotation_vector"}
         if representation not in angles:
             raise ValueError(f"representation = {representation!r}: one of {', '.join(angles)}")
@@ -305,9 +362,21 @@ class Robot:
         return found[..., [0, 1, 2, 5, 4, 3], :] if representation == "rpy/xyz" else found
 
     def jacobm(
-        self, q: ArrayLike | None = None, axes: str = "all", end: str | None = None
+        self,
+        q: ArrayLike | None = None,
+        J: ArrayLike | None = None,
+        H: ArrayLike | None = None,
+        end: str | None = None,
+        start: str | None = None,
+        axes: str | ArrayLike = "all",
     ) -> NDArray[np.float64]:
-        """The gradient of Yoshikawa's manipulability, (n, 1); NaN where there is none."""
+        """The gradient of Yoshikawa's manipulability, (n, 1); NaN where there is none.
+
+        From q, by default `qr`; without it `J` and `H` are not accepted.
+        """
+        if q is None and (J is not None or H is not None):
+            raise NotHere("the gradient of matrices alone is not in cylindroid.rtb; pass q")
+        self._from_base(start, "the gradient")
         found = self.mechanism.manipulability_gradient(
             self.qr if q is None else q,
             "volume",
@@ -330,9 +399,11 @@ class Robot:
     def manipulability(
         self,
         q: ArrayLike | None = None,
+        J: ArrayLike | None = None,
+        end: str | None = None,
+        start: str | None = None,
         method: str = "yoshikawa",
         axes: str | ArrayLike = "all",
-        end: str | None = None,
     ) -> Any:
         """Manipulability at one or many configurations.
 
@@ -340,21 +411,30 @@ class Robot:
         ----------
         q : array_like, (n,) or (N, n), optional
             Default: `qr`.
-        method : str
-            'yoshikawa' (volume of the velocity ellipsoid) or 'invcondition' (smallest over largest
-            singular value).
-        axes : str or six booleans
-            'all', 'trans', 'rot', or which of x, y, z, rx, ry, rz.
+        J : array_like, optional
+            Beside q it changes nothing; alone it is not accepted.
         end : str, optional
             A frame by name.
+        start : str, optional
+            The base.
+        method : str
+            'yoshikawa' (volume of the velocity ellipsoid), 'minsingular' (smallest singular value)
+            or 'invcondition' (smallest over largest singular value).
+        axes : str or six booleans
+            'all', 'trans', 'rot', or which of x, y, z, rx, ry, rz.
 
         Returns
         -------
         float, or ndarray, (N,)
         """
         task = self._task(axes)
-        if method not in ("yoshikawa", "invcondition"):
-            raise ValueError(f"method = {method!r}: 'yoshikawa' or 'invcondition'")
+        if method == "asada":
+            raise NotHere("method = 'asada' is not in cylindroid.rtb; use Mechanism.manipulability")
+        if method not in ("yoshikawa", "minsingular", "invcondition"):
+            raise ValueError(f"method = {method!r}: 'yoshikawa', 'minsingular' or 'invcondition'")
+        if q is None and J is not None:
+            raise NotHere("the manipulability of J alone is not in cylindroid.rtb; pass q")
+        self._from_base(start, "manipulability")
         q = self.mechanism.ordered(self.qr if q is None else q)
         found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
         possible = min(len(task.split(",")), self.n)
@@ -364,6 +444,8 @@ class Robot:
                 values.append(0.0)  # singular
             elif method == "yoshikawa":
                 values.append(k.volume)
+            elif method == "minsingular":
+                values.append(float(np.sqrt(k.finite[-1])))
             else:
                 values.append(float(np.sqrt(k.finite[-1] / k.finite[0])))
         return values[0] if np.ndim(q) == 1 else np.array(values)
@@ -380,6 +462,7 @@ class Robot:
         mask: ArrayLike | None = None,
         joint_limits: bool = True,
         seed: int | None = None,
+        *options: Any,
         **search: Any,
     ) -> IKSolution:
         """A configuration that puts the end effector at a pose: `Mechanism.ik`.
@@ -403,22 +486,24 @@ class Robot:
         joint_limits : bool
             True; limits are always kept.
         seed : int, optional
-        **search
-            `method`, `k`, `kq`, `km`, `ps`, `pi`, `pinv`, `pinv_damping` of the Toolbox's searches, which
-            this one does not have: they change nothing.
+        *options, **search
+            `k`, `method`, `kq`, `km`, `ps`, `pi`, `pinv`, `pinv_damping`, `kj`, `ks` of the Toolbox's
+            searches, which this one does not have: they change nothing.
 
         Returns
         -------
         IKSolution
             Within joint limits, always.
         """
+        if len(options) > 6:
+            raise TypeError("inverse kinematics has at most six options of the search")
         for name in search:
             if name not in SEARCH:
                 raise TypeError(f"inverse kinematics has no argument {name!r}")
         if not joint_limits:
             raise NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
         if start is not None:
-            if np.any(self.mechanism.jacobian(self.qr, start)):
+            if not self._is_fixed(start):
                 raise NotHere(f"start = {start!r} moves: targets are in frames at rest here")
             Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
         task = None
@@ -461,11 +546,12 @@ class Robot:
         tol: float = 1e-6,
         mask: ArrayLike | None = None,
         joint_limits: bool = True,
+        *options: Any,
         **search: Any,
     ) -> tuple[NDArray[np.float64], int, int, int, float]:
         """`ikine_LM` as a tuple: q, success (0 or 1), iterations, searches, residual."""
         found = self.ikine_LM(
-            Tep, end, start, q0, ilimit, slimit, tol, mask, joint_limits, **search
+            Tep, end, start, q0, ilimit, slimit, tol, mask, joint_limits, None, *options, **search
         )
         return found.q, int(found.success), found.iterations, found.searches, found.residual
 

@@ -8,6 +8,7 @@ mod limits;
 pub(crate) mod load;
 mod ordered;
 mod parameter;
+mod relative_jacobian;
 mod srdf;
 
 use std::collections::HashMap;

@@ -34,7 +34,7 @@ pub(super) struct GoalRows {
 #[derive(Debug, Clone)]
 enum Source {
     Frame(Chain),
-    Relative { other: Matrix },
+    Relative,
     CenterOfMass(MassMatrix),
     Gaze { memory: Matrix, world: Matrix },
 }
@@ -57,7 +57,7 @@ impl GoalRows {
                 own.extend_from_slice(chain_of(reference).coordinates());
                 own.sort_unstable();
                 own.dedup();
-                (Source::Relative { other: Matrix::zeros(6, n) }, Matrix::zeros(6, n))
+                (Source::Relative, Matrix::zeros(6, n))
             }
             Objective::CenterOfMass { .. } => {
                 own.extend(0..n);
@@ -128,7 +128,7 @@ impl GoalRows {
     fn error_at(&mut self, objective: &Objective, state: &State) -> Twist {
         match (&mut self.source, *objective) {
             (
-                Source::Relative { .. },
+                Source::Relative,
                 Objective::RelativeFrame { end_effector, reference, components, target },
             ) => RelativeFrame { end_effector, reference, components, target }.error(state),
             (Source::CenterOfMass(masses), Objective::CenterOfMass { axes, target }) => {
@@ -177,13 +177,10 @@ impl GoalRows {
     fn load_jacobian_at(&mut self, state: &State) {
         match (&mut self.source, self.goal.objective) {
             (
-                Source::Relative { other },
+                Source::Relative,
                 Objective::RelativeFrame { end_effector, reference, components, target },
-            ) => RelativeFrame { end_effector, reference, components, target }.jacobian_into(
-                state,
-                other,
-                &mut self.jacobian,
-            ),
+            ) => RelativeFrame { end_effector, reference, components, target }
+                .jacobian_into(state, &mut self.jacobian),
             (Source::Gaze { memory, world }, Objective::Gaze { end_effector, point }) => {
                 Gaze { end_effector, point }.jacobian_into(state, memory, world);
                 let axes = state.tip(end_effector).world_from_tip.rotation.matrix();

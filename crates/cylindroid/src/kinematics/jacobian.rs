@@ -10,11 +10,12 @@
 //! Shapes   6 x n, linear rows first
 //! Units    m/s and rad/s for each unit of joint velocity
 //! Frame    [`ReferenceFrame`] names point and axes
+//!          relative to a frame that moves: the difference of both at one point
 //! Why so   one pass from the tip to the root, only over the joints that move the frame; a mimic
 //!          joint adds its multiplier times its column to the joint that it follows
 //! Source   velocity conversion matrices of Cartesian control (columns 6 and 3 of V_j)
 //! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs::jacobian_is_assembled_by_conversion,
-//!          ::jacobian_dot_*
+//!          ::jacobian_dot_*, ::relative_jacobian_*
 
 use crate::linalg::Matrix;
 use crate::model::{Node, NodeKind};
@@ -148,6 +149,23 @@ impl Tip<'_> {
         } else {
             self.for_each_column(p, |_, c, t| add(out.column_mut(c), t));
         }
+    }
+
+    /// The Jacobian of this tip relative to another frame of the same tree, which may move: the twist
+    /// of the tip as seen from `base`, its point the tip's origin, its axes those of `base`.
+    ///
+    /// ```text
+    /// J = R_base^T (J_tip - J_base, both at the point of the tip)
+    /// ```
+    pub(crate) fn relative_jacobian_into(&self, base: &Self, out: &mut Matrix) {
+        out.as_mut_slice().fill(0.0);
+        let (p, axes) = (self.world_from_tip.translation, base.world_from_tip.rotation.matrix());
+        let seen =
+            |t: Twist| Twist { linear: axes.tr_mul(t.linear), angular: axes.tr_mul(t.angular) };
+        // Joints that carry both do not count.
+        let shared = self.common_slot(base);
+        self.for_each_column_above(shared, p, |_, c, t| add(out.column_mut(c), seen(t)));
+        base.for_each_column_above(shared, p, |_, c, t| add(out.column_mut(c), seen(-t)));
     }
 
     /// The twist of the tip at these joint velocities, in world axes at the world's origin.

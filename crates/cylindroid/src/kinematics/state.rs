@@ -183,6 +183,32 @@ impl State {
         Ok(())
     }
 
+    /// The Jacobian of a tool relative to another frame, which may move, 6 x n: the twist of the tool
+    /// as seen from `base`, its point the tool's origin, its axes those of `base`. Joints that carry
+    /// both have zeros.
+    ///
+    /// ```
+    /// // The hand of a panda seen from its elbow: four joints carry the elbow.
+    /// let robot = cylindroid::load("panda")?;
+    /// let state = robot.state(robot.home())?;
+    /// let jacobian = state.relative_jacobian(robot.tool(), robot.frame("link4")?)?;
+    /// assert!((0..4).all(|joint| jacobian.column(joint).iter().all(|x| *x == 0.0)));
+    /// assert!((4..7).all(|joint| jacobian.column(joint).iter().any(|x| *x != 0.0)));
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Frames of another mechanism.
+    pub fn relative_jacobian(
+        &self,
+        of: impl Into<EndEffector>,
+        base: impl Into<EndEffector>,
+    ) -> Result<Matrix> {
+        let mut out = Matrix::zeros(6, self.mechanism.n());
+        self.checked_tip(of)?.relative_jacobian_into(&self.checked_tip(base)?, &mut out);
+        Ok(out)
+    }
+
     /// All joints at once, into `out` (6 x n): the twist that a unit rate of each coordinate gives
     /// the links behind its joint, in world axes at the world's origin. The Jacobian of any frame
     /// with [`ReferenceFrame::World`] has these columns where the coordinate moves the frame and

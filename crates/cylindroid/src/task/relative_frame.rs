@@ -8,7 +8,7 @@
 
 use super::{Task, check_pose, twist_of};
 use crate::error::Result;
-use crate::kinematics::{EndEffector, ReferenceFrame, State};
+use crate::kinematics::{EndEffector, State};
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Twist};
@@ -42,27 +42,15 @@ impl RelativeFrame {
         self.components.error(seen, self.target)
     }
 
-    /// The Jacobian at `state`, of all six components, into `out` (6 x n); `other` is memory of the
-    /// same size.
-    pub(crate) fn jacobian_into(&self, state: &State, other: &mut Matrix, out: &mut Matrix) {
-        let (a, b) =
-            (state.tip(self.reference).world_from_tip, state.tip(self.end_effector).world_from_tip);
-        let a_from_b = a.inverse() * b;
-        let aligned = ReferenceFrame::LocalWorldAligned;
-        state.tip(self.end_effector).jacobian_into(aligned, out);
-        state.tip(self.reference).jacobian_into(aligned, other);
-        let arm = b.translation - a.translation;
-        let turn = a.rotation.matrix();
+    /// The Jacobian at `state`, of all six components, into `out` (6 x n).
+    pub(crate) fn jacobian_into(&self, state: &State, out: &mut Matrix) {
+        let (base, tip) = (state.tip(self.reference), state.tip(self.end_effector));
+        tip.relative_jacobian_into(&base, out);
+        let seen = base.world_from_tip.inverse() * tip.world_from_tip;
         let all = Task { components: [true; 6], ..self.components };
         for j in 0..out.cols() {
-            let own = twist_of(out.column(j));
-            let other = twist_of(other.column(j));
-            let carried = other.linear + other.angular.cross(arm);
-            let relative = Twist {
-                linear: turn.tr_mul(own.linear - carried),
-                angular: turn.tr_mul(own.angular - other.angular),
-            };
-            out.column_mut(j).copy_from_slice(&all.seen(a_from_b, relative).to_array());
+            let twist = twist_of(out.column(j));
+            out.column_mut(j).copy_from_slice(&all.seen(seen, twist).to_array());
         }
     }
 }

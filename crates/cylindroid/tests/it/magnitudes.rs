@@ -94,6 +94,8 @@ fn frames_of_other_mechanisms_are_errors() {
         state.jacobian(foreign, local).unwrap_err(),
         state.jacobian_into(foreign, local, &mut Matrix::zeros(6, 7)).unwrap_err(),
         state.hessian(foreign, local).unwrap_err(),
+        state.relative_jacobian(panda.tool(), foreign).unwrap_err(),
+        state.relative_jacobian(foreign, panda.tool()).unwrap_err(),
         state.analytical_jacobian(foreign, OrientationRates::RotationVector).unwrap_err(),
         Chain::new(&panda, foreign).unwrap_err(),
         KinematicsBatch::new(&panda, foreign).unwrap_err(),

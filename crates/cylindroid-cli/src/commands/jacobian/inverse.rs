@@ -67,13 +67,15 @@ pub(super) fn find(
     if args.twist.is_none() && !args.inverse.is_given() {
         return Ok(None);
     }
-    if args.analytical.is_some() {
+    let other = if args.analytical.is_some() { Some("--analytical") } else { None };
+    let other = other.or(args.relative_to.as_ref().map(|_| "--relative-to"));
+    if let Some(option) = other {
         return Err(Error::InvalidOption {
-            option: "--analytical",
+            option,
             value: args.inverse.name().to_owned(),
             reason:
-                "inverses are those of the geometric Jacobian, whose task is a twist; omit the \
-                     option"
+                "inverses are those of the geometric Jacobian, whose task is a twist in the world; omit \
+                     the option"
                     .to_owned(),
         });
     }

@@ -20,8 +20,10 @@ struct JacobianJson<'a> {
     model: &'a str,
     frame: &'a str,
     /// Point and axes of the twist; those of an analytical Jacobian are the frame's origin and
-    /// the world's axes.
+    /// the world's axes, `relative` has the frame's origin and the axes of `relative_to`.
     reference: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    relative_to: Option<&'a str>,
     q: &'a [f64],
     joint_names: Vec<&'a str>,
     outside_limits: Vec<&'a str>,
@@ -67,9 +69,10 @@ pub(crate) fn run(args: &JacobianArgs, style: Style, out: &mut dyn Write) -> any
         ReferenceName::LocalWorldAligned => ReferenceFrame::LocalWorldAligned,
     };
 
-    let (matrix, analytical) = match args.analytical {
-        None => (state.jacobian(end_effector, reference)?, None),
-        Some(angles) => {
+    let (matrix, analytical) = match (args.analytical, &args.relative_to) {
+        (None, None) => (state.jacobian(end_effector, reference)?, None),
+        (None, Some(base)) => (state.relative_jacobian(end_effector, robot.frame(base)?)?, None),
+        (Some(angles), _) => {
             let (kind, angles) = orientation_rates(angles);
             let of = state.analytical_jacobian(end_effector, kind)?;
             let report = AnalyticalJson { angles, determinant: of.determinant, exists: of.exists };
@@ -90,7 +93,8 @@ pub(crate) fn run(args: &JacobianArgs, style: Style, out: &mut dyn Write) -> any
     let report = JacobianJson {
         model: robot.name(),
         frame: &robot.frame_of(end_effector.frame).name,
-        reference: reference.name(),
+        reference: args.relative_to.as_ref().map_or(reference.name(), |_| "relative"),
+        relative_to: args.relative_to.as_deref(),
         q: state.q(),
         joint_names: output::joint_names(&robot),
         outside_limits: output::outside_limits(&robot, state.q()),
@@ -152,7 +156,7 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
             ("model", report.model.to_owned()),
             ("q [rad or m]", output::entries(report.q)),
             ("frame", report.frame.to_owned()),
-            ("reference", report.reference.to_owned()),
+            ("reference", reference_text(report)),
             ("note", note),
         ],
     )?;
@@ -188,6 +192,12 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
     )?;
     let Some(found) = &report.inverse else { return Ok(()) };
     inverse::print(out, found, &report.joint_names, &rows)
+}
+
+fn reference_text(report: &JacobianJson<'_>) -> String {
+    report.relative_to.map_or(report.reference.to_owned(), |base| {
+        format!("the frame's origin, axes of '{base}', relative to it")
+    })
 }
 
 fn rank_text(report: &JacobianJson<'_>) -> String {

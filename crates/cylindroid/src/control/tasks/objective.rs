@@ -116,7 +116,6 @@ pub enum TaskObjective {
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     jacobian: Matrix,
-    other: Matrix,
     center: Matrix,
     masses: Option<MassMatrix>,
 }
@@ -126,7 +125,6 @@ impl Scratch {
         let n = mechanism.n();
         Self {
             jacobian: Matrix::zeros(6, n),
-            other: Matrix::zeros(6, n),
             center: Matrix::zeros(3, n),
             masses: needs_masses.then(|| MassMatrix::new(mechanism)),
         }
@@ -352,7 +350,7 @@ impl TaskObjective {
                 let (components, target) = (*components, *target);
                 let task = RelativeFrame { end_effector, reference, components, target };
                 let error = task.error(state);
-                task.jacobian_into(state, &mut scratch.other, &mut scratch.jacobian);
+                task.jacobian_into(state, &mut scratch.jacobian);
                 write(components.components, error, Twist::ZERO, &scratch.jacobian, rows);
             }
             Self::CenterOfMass { axes, target, velocity } => {

@@ -37,6 +37,7 @@ calls! {
     kinematics::State::mechanism;
     kinematics::State::pose = |s: &'static State, of: EndEffector| s.pose(of);
     kinematics::State::q;
+    kinematics::State::relative_jacobian = |s: &'static State, of: EndEffector, base: EndEffector| s.relative_jacobian(of, base);
     kinematics::State::set;
     kinematics::State::twist = |s: &'static State, rates: &'static [f64], of: EndEffector, r: ReferenceFrame| s.twist(rates, of, r);
     kinematics::velocity_conversion;
