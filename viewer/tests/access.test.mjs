@@ -26,10 +26,10 @@ async function violations(page) {
 }
 
 /** Width, height, and whether it is dark. */
-const LOOKS = /** @type {const} */ ([[1366, 768, false], [390, 844, true], [1366, 768, true], [390, 844, false]]);
+const LOOKS = /** @type {const} */ ([[1366, 768, false], [390, 844, true], [1366, 768, true], [390, 844, false], [844, 390, true], [1100, 700, false], [1920, 1080, true]]);
 /** @type {[string, string[], number][]} */
 const MODELS = [
-  ["an arm among obstacles", [CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3", "--obstacle", "box=box:0.1,0.2,0.3@0.7,0.6,0.3"], 4],
+  ["an arm among obstacles", [CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3", "--obstacle", "box=box:0.1,0.2,0.3@0.7,0.6,0.3"], 7],
   ["a planar closed chain", ["five-bar"], 2],
   ["a platform", ["stewart"], 2],
 ];

@@ -44,6 +44,35 @@ for (const [model, overlay, words] of /** @type {[string, string, RegExp][]} */ 
     }));
 }
 
+for (const model of ["five-bar", "panda", "stewart", "3r"]) {
+  test(`ellipsoids of the ${model} are drawn in the proportions of their numbers, at the scale of the legend`, () =>
+    visit([model], async (page) => {
+      for (const overlay of ["velocity-ellipsoid", "active-force-ellipsoid"]) {
+        await showOverlay(page, overlay);
+        const sizes = await page.evaluate((name) => /** @type {any} */ (window).viewer.session.state.overlays[name].axes.map((/** @type {{ size: number }} */ axis) => axis.size), overlay);
+        assert.ok(sizes.length > 1);
+        const drawn = await page.waitForFunction(() => {
+          /** @type {number[][]} */
+          const found = [];
+          /** @type {any} */ (window).viewer.stage.scene.traverse((/** @type {any} */ part) => {
+            if (part.isMesh && part.renderOrder === 2 && part.geometry.type === "SphereGeometry" && !part.matrixAutoUpdate) {
+              const e = part.matrix.elements;
+              found.push([0, 4, 8].map((i) => Math.hypot(e[i], e[i + 1], e[i + 2])));
+            }
+          });
+          return found.length === 1 && found[0];
+        });
+        const lengths = /** @type {number[]} */ (await drawn.jsonValue());
+        const scale = (lengths[0] ?? 0) / sizes[0];
+        for (const [i, size] of sizes.entries()) assert.ok(Math.abs((lengths[i] ?? 0) - scale * size) < 1e-9 * size * scale, `${overlay}: ${lengths} of ${sizes}`);
+        const said = /is (\S+)\sm/.exec(await page.locator(".legend").innerText())?.[1];
+        assert.ok(Math.abs(Number(said) / scale - 1) < 0.05, `${overlay}: ${said} of ${scale}`);
+        await page.locator(`[data-overlay="${overlay}"]`).uncheck();
+        await page.waitForFunction(() => !document.querySelector(".legend")?.textContent?.includes("is "));
+      }
+    }));
+}
+
 test("with one actuated joint of the five-bar the object is free, and the page says so", () =>
   visit(["five-bar"], async (page) => {
     await page.locator('[data-actuator="q2"]').click();

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { promisify } from "node:util";
-import { apart, BINARY, browserOfFile, openFiles, picture, scene, state, until } from "./lib.mjs";
+import { apart, BINARY, browserOfFile, enter, openFiles, picture, scene, state, until } from "./lib.mjs";
 
 /** @typedef {import("playwright-core").Page} Page */
 
@@ -89,6 +89,23 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
     const now = await state(page);
     assert.ok(apart(now.q, q) < 1e-9);
     assert.ok(apart(now.tool.position, ["x", "y", "z"].map((name) => columns[name]?.[number] ?? NaN)) < 1e-9);
+    // By keys: the number of a point, and the extremes of what colours.
+    const reaches = async (/** @type {number} */ wanted) => {
+      const q = coordinates.map(({ name }) => columns[name]?.[wanted] ?? NaN);
+      await until(page, `Math.abs(state.q[0] - ${q[0]}) < 1e-9 && Math.abs(state.q[1] - ${q[1]}) < 1e-9`);
+      await panel.getByText(new RegExp(`^Point ${columns["index"]?.[wanted]}: `)).waitFor();
+    };
+    await enter(panel.getByLabel("Number of a point"), 17);
+    await reaches(columns["index"]?.indexOf(17) ?? -1);
+    const values = columns["yoshikawa"] ?? [];
+    for (const [name, value] of /** @type {[string, number][]} */ ([["Largest", Math.max(...values)], ["Smallest", Math.min(...values)]])) {
+      await panel.getByRole("button", { name }).focus();
+      await page.keyboard.press("Enter");
+      await reaches(values.indexOf(value));
+      assert.equal(Number(await panel.getByLabel("Number of a point").inputValue()), columns["index"]?.[values.indexOf(value)]);
+    }
+    await enter(panel.getByLabel("Number of a point"), 3000);
+    await page.getByText("part-000000.parquet has no point 3000.").waitFor();
     // Nothing behind the point is selected.
     assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.selection.selected ?? null), null);
     await picture(page, "map-clicked");

@@ -91,6 +91,31 @@ test("a URDF and its mesh are chosen together; of two models one is chosen; a dr
     await untilModel(page, "third");
   }));
 
+const MJCF = '<mujoco model="swing"><worldbody><body name="arm"><joint name="lift" type="hinge" axis="0 1 0"/><geom size="0.1"/></body></worldbody></mujoco>';
+const SDF = '<sdf version="1.9"><model name="gate"><link name="a"/><link name="b"/><joint name="lift" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>';
+const TOML = 'name = "slide"\n[[joint]]\nname = "lift"\ntype = "prismatic"\nbetween = ["ground", "cart"]\norigin = [0, 0, 0]\naxis = [0, 0, 1]\nactuated = true\n';
+
+test("files of every format open by a drop, alone and in a zip", () =>
+  visit(["panda"], async (page) => {
+    for (const [name, model, text] of /** @type {const} */ ([["swing.xml", "swing", MJCF], ["gate.sdf", "gate", SDF], ["slide.toml", "slide", TOML]])) {
+      for (const zipped of [false, true]) {
+        const called = zipped ? `${model}-2` : model;
+        const changed = text.replace(`"${model}"`, `"${called}"`);
+        const bytes = zipped ? zipSync({ [name]: strToU8(changed) }) : strToU8(changed);
+        const transfer = await page.evaluateHandle(([numbers, file]) => {
+          const data = new DataTransfer();
+          data.items.add(new File([new Uint8Array(numbers)], file));
+          return data;
+        }, /** @type {const} */ ([[...bytes], zipped ? `${model}.zip` : name]));
+        for (const type of ["dragover", "drop"]) await page.dispatchEvent("canvas", type, { dataTransfer: transfer });
+        await untilModel(page, called);
+        await page.getByLabel("lift as a number").fill("0.25");
+        await page.getByLabel("lift as a number").press("Enter");
+        await until(page, "Math.abs(state.q[0] - 0.25) < 1e-9");
+      }
+    }
+  }));
+
 test("what is wrong with a file is said with file, line and text, and the model stays", () =>
   visit(["panda"], async (page) => {
     const problem = page.locator("dialog .problem");

@@ -103,6 +103,53 @@ test("a recording plays to its end, in a loop, faster and slower", () =>
     await page.getByRole("button", { name: "Pause playback" }).click();
   }));
 
+test("marks are where limits and singular values bit, the trail is the way of the tool, and plots leave as PNG", () =>
+  visit(["panda"], async (page) => {
+    await page.getByRole("button", { name: "Record" }).click();
+    // Farther out than the arm is long: joints come to their limits, and the arm is stretched.
+    await moveTarget(page, "x", 1.5);
+    await until(page, 'state.servo.status === "stalled"');
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    const { states, times } = JSON.parse(await saved(page, "Save the recording as JSON"));
+    const isSo = {
+      limit: (/** @type {any} */ { servo, outside_limits }) => servo.limits.length + outside_limits.length > 0,
+      singular: (/** @type {any} */ { singular }) => singular?.values.some((/** @type {number} */ value) => value < singular.threshold),
+    };
+    let seen = 0;
+    for (const [name, is] of Object.entries(isSo)) {
+      const wanted = states.reduce((/** @type {number} */ sum, /** @type {any} */ state, /** @type {number} */ i) => sum + Number(is(state) && !(i > 0 && is(states[i - 1]))), 0);
+      const drawn = await page.locator(`.dock-marks .mark-${name}`).evaluateAll((rects) => rects.map((rect) => ["x", "width"].map((key) => Number(rect.getAttribute(key)))));
+      assert.equal(drawn.length, wanted, name);
+      const across = await slider(page).evaluate((element) => element.clientWidth);
+      for (const [x = NaN, width = NaN] of drawn) assert.ok(x >= 0 && x + width <= across + 1.5, `${name}: ${drawn} of ${across}`);
+      seen += wanted;
+    }
+    assert.ok(seen > 0, "nothing bit");
+
+    const trail = () => page.evaluate(() => {
+      const line = /** @type {any} */ (window).viewer.timeline.trail.group.children[0];
+      if (!line) return [];
+      const [start, end] = ["instanceStart", "instanceEnd"].map((name) => line.geometry.getAttribute(name));
+      const points = Array.from({ length: start.count }, (_, i) => [start.getX(i), start.getY(i), start.getZ(i)]);
+      return [...points, [end.getX(end.count - 1), end.getY(end.count - 1), end.getZ(end.count - 1)]];
+    });
+    const [way, tools] = [await trail(), states.map((/** @type {any} */ state) => state.tool.position)];
+    assert.ok(way.length > 10);
+    for (const point of way) assert.ok(tools.some((/** @type {number[]} */ tool) => apart(tool, point) < 1e-6), `${point} is no place of the tool`);
+    assert.ok(apart(way[0] ?? [], tools[0]) < 1e-6 && apart(way.at(-1) ?? [], tools.at(-1)) < 2e-3);
+    const toggle = page.getByRole("button", { name: "Trail of the tool" });
+    await toggle.click();
+    assert.equal((await trail()).length, 0);
+    await toggle.click();
+    assert.equal((await trail()).length, way.length);
+
+    const picture = Buffer.from(await saved(page, "Save the plots as PNG", "latin1"), "latin1");
+    assert.deepEqual([...picture.subarray(0, 8)], [0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
+    // Wider than the plots of a phone, and as high as one plot at least.
+    assert.ok(picture.readUInt32BE(16) > 300 && picture.readUInt32BE(20) > 100);
+    assert.ok(times.length === states.length);
+  }));
+
 test("whoever moves the robot goes on from the moment shown, and undo leads back", () =>
   visit(["panda"], async (page) => {
     const { states } = await recordMotion(page);

@@ -66,5 +66,5 @@ def test_what_an_srdf_ignores():
     report = cy.Srdf("r.srdf", text).report
     assert report.format == "SRDF"
     found = [(line, what) for line, what, _ in report.ignored]
-    assert found == [(2, "<virtual_joint>"), (3, "attribute 'rank' of <group>")]
+    assert found == [(2, "<virtual_joint>"), (3, "attribute 'rank' of <group> (g)")]
     assert not GROUPS.report.ignored

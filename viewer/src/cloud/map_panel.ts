@@ -1,4 +1,4 @@
-/** The map of a sweep: its points in the view, what colours them, a cut, and the robot at the point that is clicked. */
+/** The map of a sweep: its points in the view, what colours them, a cut, and the robot at the point that is clicked or named. */
 import { Choice } from "../controls/choice";
 import { h, text } from "../dom";
 import { count, fixed, short } from "../format";
@@ -15,6 +15,7 @@ import { readTable, type Table } from "./table";
 const NUMBERS = ["index"];
 const PLACES = ["x", "y", "z", "qw", "qx", "qy", "qz"];
 const AXES: Axis[] = ["x", "y", "z"];
+const HINT = "A click on a point, or its number, moves the robot there.";
 const SIZE = { least: 1, most: 12, first: 3 };
 
 export class MapPanel {
@@ -24,12 +25,15 @@ export class MapPanel {
   private readonly axis = new Choice("Cut", (axis) => this.cut(AXES.find((one) => one === axis) ?? null));
   private readonly low = h("span", { class: "number" });
   private readonly high = h("span", { class: "number" });
-  private readonly clicked = h("p", { class: "note", role: "status" }, "A click on a point moves the robot there.");
+  private readonly clicked = h("p", { class: "note", role: "status" }, HINT);
+  private readonly number = h("input", { class: "field", type: "number", min: 0, step: 1, "aria-label": "Number of a point" });
   private readonly size = h("input", { type: "range", min: SIZE.least, max: SIZE.most, step: 0.5, value: SIZE.first, "aria-label": "Size of points [pixels]" });
   private readonly place = h("input", { type: "range", step: "any", "aria-label": "Place of the cut [m]" });
   private readonly placeWords = h("span", { class: "note" });
   private table: Table | null = null;
   private cutAxis: Axis | null = null;
+  /** The column that colours. */
+  private painted = "";
 
   constructor(private readonly session: Session, stage: Stage, private readonly say: (words: string, bad?: boolean) => void, picking: Picking) {
     this.cloud = new Cloud(stage, (row) => this.pick(row), picking);
@@ -39,12 +43,18 @@ export class MapPanel {
     });
     fillSlider(this.size);
     this.place.addEventListener("input", () => this.move());
+    this.number.addEventListener("change", () => this.pickNumber());
     this.panel.body.append(
       this.colour.element,
       h("div", { class: "ramp-line" }, this.low, h("span", { class: "ramp" }), this.high),
       h("label", { class: "line" }, h("span", { class: "note" }, "Points"), this.size),
       this.axis.element,
       h("label", { class: "line" }, this.placeWords, this.place),
+      h("div", { class: "row" },
+        h("label", { class: "line" }, h("span", { class: "note" }, "Point"), this.number),
+        h("button", { class: "button small", type: "button", onclick: () => this.pickExtreme(-1) }, "Smallest"),
+        h("button", { class: "button small", type: "button", onclick: () => this.pickExtreme(1) }, "Largest"),
+      ),
       this.clicked,
       h("div", { class: "row" }, h("button", { class: "button small", type: "button", onclick: () => this.show(null) }, "Remove")),
     );
@@ -76,10 +86,12 @@ export class MapPanel {
     this.axis.show([["", "none"], ...AXES.map((axis): [string, string] => [axis, `beyond ${axis}`])], "");
     this.paint(first);
     this.cut(null);
-    text(this.clicked, "A click on a point moves the robot there.");
+    this.number.value = "";
+    text(this.clicked, HINT);
   }
 
   private paint(name: string): void {
+    this.painted = name;
     const values = this.table?.columns.get(name);
     if (!values) return;
     const range = rangeOf(values);
@@ -118,8 +130,30 @@ export class MapPanel {
     }
     const q = state.q.map((value, i) => columns[i]?.[row] ?? value);
     const number = table.columns.get("index")?.[row] ?? row;
+    this.number.value = String(number);
     text(this.clicked, `Point ${number}: ${this.words(table, row, scene)}`);
     this.session.send({ type: "configuration", q });
+  }
+
+  /** The point whose number was entered. */
+  private pickNumber(): void {
+    const { table } = this;
+    const number = this.number.valueAsNumber;
+    if (!table || Number.isNaN(number)) return;
+    const row = table.columns.get("index")?.indexOf(number) ?? number;
+    if (Number.isInteger(row) && row >= 0 && row < table.rows) this.pick(row);
+    else this.say(`${table.name} has no point ${number}.`, true);
+  }
+
+  /** The point where what colours is smallest (-1) or largest (1). */
+  private pickExtreme(sign: -1 | 1): void {
+    const values = this.table?.columns.get(this.painted);
+    let best = -1;
+    values?.forEach((value, row) => {
+      if (Number.isFinite(value) && (best < 0 || sign * value > sign * (values[best] ?? NaN))) best = row;
+    });
+    if (best >= 0) this.pick(best);
+    else this.say(`${this.painted} has no finite value.`, true);
   }
 
   private words(table: Table, row: number, scene: Scene): string {

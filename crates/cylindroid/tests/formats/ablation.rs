@@ -5,8 +5,10 @@ use std::path::Path;
 
 use cylindroid::model::Ignored;
 use cylindroid::model::formats::srdf;
-use cylindroid::{Mechanism, Result};
+use cylindroid::{Mechanism, Result, catalogue};
 
+use crate::closed_file::FINGERS;
+use crate::elasticity::{BARS, PARTS};
 use crate::mjcf::read_mjcf;
 use crate::sdf::read_sdf;
 use crate::{read_toml, read_urdf};
@@ -184,6 +186,22 @@ link = 'c'
 xyz = [1, 2, 3]
 rpy = [1, 2, 3]";
 
+const CONTACT: &str = "[[joint]]
+name = 'j'
+type = 'revolute'
+between = ['ground', 'arm']
+origin = [0, 0, 0]
+axis = [0, 0, 1]
+[[contact]]
+name = 'c'
+type = 'soft_finger'
+tangent = [1, 0.8, -0.6]
+between = ['arm', 'box']
+point = [1, 0, 0]
+normal = [0, 0.6, 0.8]
+friction = 0.5
+curvature = [100, { principal = [4, 1], direction = [2, 1, 0] }]";
+
 #[test]
 fn no_number_of_a_urdf_is_silent() {
     ablate("urdf", &lines(URDF), read_urdf);
@@ -266,4 +284,21 @@ fn no_number_of_an_srdf_is_silent() {
 fn no_number_of_a_mechanism_file_is_silent() {
     ablate("toml", TOML, read_toml);
     ablate("arm.toml", crate::ARM_TOML, read_toml);
+    ablate("tables of contacts", FINGERS, read_toml);
+    ablate("contact in space", CONTACT, read_toml);
+    ablate("elasticity", &format!("{BARS}{PARTS}"), read_toml);
+    ablate("parameters", include_str!("../data/five_bar_parameters.toml"), read_toml);
+}
+
+/// Arms of Denavit-Hartenberg tables, closed chains, contacts and robots that include robots.
+#[test]
+fn no_number_of_the_catalogue_is_silent() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/model/catalogue");
+    for name in catalogue::names() {
+        let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
+        // Numbers of prose are none of the mechanism.
+        let is_prose = |l: &&str| ["#", "source =", "description ="].iter().any(|p| l.starts_with(p));
+        let text: Vec<&str> = text.lines().filter(|l| !is_prose(l)).collect();
+        ablate(name, &text.join("\n"), read_toml);
+    }
 }

@@ -5,14 +5,14 @@ use cylindroid::model::{ElasticKind, Mechanism};
 
 use crate::{read_toml, refused};
 
-const BARS: &str = "dimension = 2\nreference = \"b\"\n\
+pub(crate) const BARS: &str = "dimension = 2\nreference = \"b\"\n\
     [[joint]]\nname = \"q1\"\ntype = \"revolute\"\nbetween = [\"ground\", \"a\"]\norigin = [0, 0]\n\
     actuated = true\n\
     [[joint]]\nname = \"q2\"\ntype = \"revolute\"\nbetween = [\"a\", \"b\"]\norigin = [0, 2]\n\
     [[joint]]\nname = \"q3\"\ntype = \"revolute\"\nbetween = [\"b\", \"c\"]\norigin = [2, 2]\n\
     [[joint]]\nname = \"q4\"\ntype = \"revolute\"\nbetween = [\"c\", \"ground\"]\norigin = [2, 0]\n";
 
-const PARTS: &str = "[[elasticity]]\njoint = \"q1\"\nstiffness = 500\ncompliance = [1e-6, 2e-6, 0]\n\
+pub(crate) const PARTS: &str = "[[elasticity]]\njoint = \"q1\"\nstiffness = 500\ncompliance = [1e-6, 2e-6, 0]\n\
     [[elasticity]]\nlink = \"a\"\npoint = [0, 2]\n\
     compliance = [[1e-5, 0, -2e-5], [0, 1e-9, 0], [-2e-5, 0, 5e-5]]\n\
     [[elasticity]]\njoint = \"q4\"\ncompliance = [1e-7, 1e-7, 0]\n";

@@ -144,3 +144,17 @@ fn groups_that_do_not_exist_are_refused() {
     assert!(broken(word).contains("'x' is not a number"));
     assert!(broken("<end_effector name='a' group='b'/>").contains("parent_link"));
 }
+
+#[test]
+fn bytes_that_are_not_utf8_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("panda.srdf");
+    let bytes = b"<robot name='panda'>\n<group name='gr\xfcn'><joint name='panda_joint1'/></group>\n</robot>";
+    std::fs::write(&path, bytes).unwrap();
+    let srdf = srdf::load(&path).unwrap();
+    assert_eq!(srdf.groups[0].name, "gr\u{fffd}n");
+    let note = &srdf.report.ignored[0];
+    assert_eq!((note.line, note.what.as_str()), (2, "bytes that are not UTF-8"));
+    std::fs::write(&path, bytes.map(|b| if b == 0xfc { b'u' } else { b })).unwrap();
+    assert!(srdf::load(&path).unwrap().report.ignored.is_empty());
+}

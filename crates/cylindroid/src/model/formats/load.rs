@@ -116,7 +116,8 @@ fn read_file(
     if let Some((name, _)) = given.first() {
         return Err(toml::none(name, &shown(path)));
     }
-    let TextFile { text, replaced } = file;
+    let note = file.note();
+    let text = file.text;
     let is_xml = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
     let mechanism = match extension(path).as_deref() {
         Some("mjcf") => mjcf::parse(&text, path)?,
@@ -135,13 +136,9 @@ fn read_file(
             });
         }
     };
-    Ok(match replaced {
+    Ok(match note {
         None => mechanism,
-        Some(at) => {
-            let line = text[..at].matches('\n').count() + 1;
-            let why = "names and texts have \u{fffd} for them; save the file as UTF-8";
-            mechanism.noting(line, "bytes that are not UTF-8", why)
-        }
+        Some((line, what, why)) => mechanism.noting(line, what, why),
     })
 }
 

@@ -21,6 +21,15 @@ pub(super) struct TextFile {
     pub(super) replaced: Option<usize>,
 }
 
+impl TextFile {
+    /// Line, subject and reason of the note that bytes were replaced, if any were.
+    pub(super) fn note(&self) -> Option<(usize, &'static str, &'static str)> {
+        let line = self.text[..self.replaced?].matches('\n').count() + 1;
+        let why = "names and texts have \u{fffd} for them; save the file as UTF-8";
+        Some((line, "bytes that are not UTF-8", why))
+    }
+}
+
 /// Reads a model file.
 pub(super) fn read(path: &Path) -> Result<TextFile> {
     let bytes = read_regular_file(path, LARGEST_FILE)?;

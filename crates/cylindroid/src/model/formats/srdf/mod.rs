@@ -222,7 +222,12 @@ fn state(reader: &mut Reader<'_>, node: Node<'_, '_>) -> Result<GroupState> {
 /// # Errors
 /// [`Error::Io`](crate::Error::Io); those of [`parse`].
 pub fn load(path: &Path) -> Result<Srdf> {
-    parse(&text_file::read(path)?.text, path)
+    let file = text_file::read(path)?;
+    let mut srdf = parse(&file.text, path)?;
+    if let Some((line, what, why)) = file.note() {
+        srdf.report.ignore(line, what, why);
+    }
+    Ok(srdf)
 }
 
 impl Srdf {
