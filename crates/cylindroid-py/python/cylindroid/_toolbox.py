@@ -43,9 +43,6 @@ INSTEAD = {
     "control_mode default_backend set_default_backend": "",
 }
 
-#: Options of the Toolbox's searches for inverse kinematics.
-SEARCH = {"k", "kj", "ks", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
-
 
 class NotHere(NotImplementedError, AttributeError):
     """A member of the Toolbox that is not here; for `hasattr` a missing attribute."""

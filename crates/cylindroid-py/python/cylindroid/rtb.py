@@ -27,17 +27,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import InvalidOptionError, Mechanism, load
-from ._toolbox import ROOT, SEARCH, NotHere, instead_of, is_toolbox_robot, mechanism_of
+from . import Mechanism, load
+from ._toolbox import ROOT, NotHere, instead_of, is_toolbox_robot, mechanism_of
+from ._toolbox_arguments import AXES, check_search, kept, measure, searched, seen, task_of
 
 __all__ = ["IKSolution", "Robot"]
-
-_AXES = {
-    "all": "x,y,z,rx,ry,rz",
-    "trans": "x,y,z",
-    "rot": "rx,ry,rz",
-}
-
 
 @dataclass(frozen=True)
 class IKSolution:
@@ -61,13 +55,6 @@ class IKSolution:
     searches: int
     residual: float
     reason: str
-
-
-def _seen(pose: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Twists, (..., 6, n), in the axes of a pose, (..., 4, 4)."""
-    axes = np.zeros((*pose.shape[:-2], 6, 6))
-    axes[..., :3, :3] = axes[..., 3:, 3:] = np.swapaxes(pose[..., :3, :3], -1, -2)
-    return axes @ twists
 
 
 class Robot:
@@ -139,41 +126,14 @@ class Robot:
         """The `qr` of the robot of the Toolbox, otherwise the home configuration, (n,)."""
         return self.configs.get("qr", self.mechanism.home).copy()
 
-    @property
-    def q(self) -> NDArray[np.float64]:
-        """A configuration to keep with the robot, (n,) [rad or m]; zero at first."""
-        return self._now["q"].copy()
+    q = kept("q")
+    """A configuration to keep with the robot, (n,) [rad or m]; zero at first."""
 
-    @q.setter
-    def q(self, q: ArrayLike) -> None:
-        self._keep("q", q)
+    qd = kept("qd")
+    """Joint velocities to keep with the robot, (n,) [rad/s or m/s]; zero at first."""
 
-    @property
-    def qd(self) -> NDArray[np.float64]:
-        """Joint velocities to keep with the robot, (n,) [rad/s or m/s]; zero at first."""
-        return self._now["qd"].copy()
-
-    @qd.setter
-    def qd(self, qd: ArrayLike) -> None:
-        self._keep("qd", qd)
-
-    @property
-    def qdd(self) -> NDArray[np.float64]:
-        """Joint accelerations to keep with the robot, (n,) [rad/s^2 or m/s^2]; zero at first."""
-        return self._now["qdd"].copy()
-
-    @qdd.setter
-    def qdd(self, qdd: ArrayLike) -> None:
-        self._keep("qdd", qdd)
-
-    def _keep(self, name: str, values: ArrayLike) -> None:
-        try:
-            values = np.array(values, dtype=float)
-        except (TypeError, ValueError) as error:
-            raise InvalidOptionError(f"{name}: {self.n} numbers are needed") from error
-        if values.shape != (self.n,) or not np.all(np.isfinite(values)):
-            raise InvalidOptionError(f"{name}: {self.n} finite numbers are needed")
-        self._now[name] = values
+    qdd = kept("qdd")
+    """Joint accelerations to keep with the robot, (n,) [rad/s^2 or m/s^2]; zero at first."""
 
     def isrevolute(self, j: int) -> bool:
         """True if coordinate j is an angle."""
@@ -274,7 +234,7 @@ class Robot:
     ) -> NDArray[np.float64]:
         """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n); as `jacob0`."""
         if start is not None:
-            return _seen(self.fkine(q, end, start, tool), self.jacob0(q, end, start, tool))
+            return seen(self.fkine(q, end, start, tool), self.jacob0(q, end, start, tool))
         return self.mechanism.jacobian(q, end or self._end, "local", tool)
 
     def hessian0(
@@ -285,10 +245,7 @@ class Robot:
         J0: ArrayLike | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n).
-
-        From q; a Jacobian `J0` beside it changes nothing. `start` is the base.
-        """
+        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n); from q, `J0` changes nothing."""
         if q is None:
             raise NotHere("the Hessian of a Jacobian alone is not in cylindroid.rtb; pass q")
         self._from_base(start, "the Hessian")
@@ -304,7 +261,7 @@ class Robot:
     ) -> NDArray[np.float64]:
         """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n); as `hessian0`."""
         found = self.hessian0(q, end, start, Je, tool)
-        return _seen(self.fkine(q, end, tool=tool)[..., None, :, :], found)
+        return seen(self.fkine(q, end, tool=tool)[..., None, :, :], found)
 
     def jacob0_dot(
         self,
@@ -370,10 +327,7 @@ class Robot:
         start: str | None = None,
         axes: str | ArrayLike = "all",
     ) -> NDArray[np.float64]:
-        """The gradient of Yoshikawa's manipulability, (n, 1); NaN where there is none.
-
-        From q, by default `qr`; without it `J` and `H` are not accepted.
-        """
+        """The gradient of Yoshikawa's manipulability at q or `qr`, (n, 1); NaN where there is none."""
         if q is None and (J is not None or H is not None):
             raise NotHere("the gradient of matrices alone is not in cylindroid.rtb; pass q")
         self._from_base(start, "the gradient")
@@ -381,20 +335,10 @@ class Robot:
             self.qr if q is None else q,
             "volume",
             reference=end or self._end,
-            task=self._task(axes),
+            task=task_of(axes),
         )
         gradient = np.full(self.n, np.nan) if found.gradient is None else found.gradient
         return gradient.reshape(-1, 1)
-
-    def _task(self, axes: str | ArrayLike) -> str:
-        if isinstance(axes, str):
-            if axes not in _AXES:
-                raise ValueError(f"axes = {axes!r}: one of {', '.join(_AXES)}, or six booleans")
-            return _AXES[axes]
-        mask = np.asarray(axes, dtype=bool)
-        if mask.shape != (6,):
-            raise ValueError("axes are six booleans: x, y, z, rx, ry, rz")
-        return ",".join(np.array(_AXES["all"].split(","))[mask])
 
     def manipulability(
         self,
@@ -427,7 +371,7 @@ class Robot:
         -------
         float, or ndarray, (N,)
         """
-        task = self._task(axes)
+        task = task_of(axes)
         if method == "asada":
             raise NotHere("method = 'asada' is not in cylindroid.rtb; use Mechanism.manipulability")
         if method not in ("yoshikawa", "minsingular", "invcondition"):
@@ -438,16 +382,7 @@ class Robot:
         q = self.mechanism.ordered(self.qr if q is None else q)
         found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
         possible = min(len(task.split(",")), self.n)
-        values = []
-        for k in (report.kinematic for report in found):
-            if len(k.finite) < possible:
-                values.append(0.0)  # singular
-            elif method == "yoshikawa":
-                values.append(k.volume)
-            elif method == "minsingular":
-                values.append(float(np.sqrt(k.finite[-1])))
-            else:
-                values.append(float(np.sqrt(k.finite[-1] / k.finite[0])))
+        values = [measure(report.kinematic, method, possible) for report in found]
         return values[0] if np.ndim(q) == 1 else np.array(values)
 
     def ikine_LM(
@@ -495,34 +430,13 @@ class Robot:
         IKSolution
             Within joint limits, always.
         """
-        if len(options) > 6:
-            raise TypeError("inverse kinematics has at most six options of the search")
-        for name in search:
-            if name not in SEARCH:
-                raise TypeError(f"inverse kinematics has no argument {name!r}")
-        if not joint_limits:
-            raise NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
         if start is not None:
             if not self._is_fixed(start):
                 raise NotHere(f"start = {start!r} moves: targets are in frames at rest here")
             Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
-        task = None
-        if mask is not None:
-            chosen = np.asarray(mask, dtype=float) != 0
-            if chosen.shape != (6,):
-                raise ValueError("mask has six entries: x, y, z, rx, ry, rz")
-            task = ",".join(np.array(_AXES["all"].split(","))[chosen])
-        # Half of e^2 + a^2 within tol where both are within its root.
-        error = float(np.sqrt(tol))
-        found = self.mechanism.ik(
-            Tep,
-            end or self._end,
-            q0,
-            task=task,
-            tolerance_position=error,
-            tolerance_orientation=error,
-            seed=seed or 0,
-            iterations=ilimit * slimit,
+        check_search(options, search, joint_limits)
+        found = searched(
+            self.mechanism, Tep, end or self._end, q0, ilimit * slimit, tol, mask, seed or 0
         )
         residual = 0.5 * (found.position_error**2 + found.orientation_error**2)
         reason = "" if found.success else "not reached within the budget"
@@ -563,7 +477,7 @@ class Robot:
         if opt not in ("trans", "rot"):
             raise ValueError(f"opt = {opt!r}: 'trans' or 'rot'")
         q = self.mechanism.ordered(self.q if q is None else q)
-        report = self.mechanism.manipulability(q, reference=self._end, task=_AXES[opt])
+        report = self.mechanism.manipulability(q, reference=self._end, task=AXES[opt])
         return plot.ellipsoid(getattr(report, kind), self.fkine(q)[:3, 3], **options)
 
     def vellipse(self, q: ArrayLike | None = None, opt: str = "trans", **options: Any) -> Any:

@@ -9,13 +9,13 @@
 //!          that body; moving the point p adds w_i x dp/dt; the local frame adds -ad(V_tool) J_i
 //! Shapes   6 x n, linear rows first
 //! Units    m/s and rad/s for each unit of joint velocity
-//! Frame    [`ReferenceFrame`] names point and axes
+//! Frame    [`ReferenceFrame`] names point and axes;
 //!          relative to a frame that moves: the difference of both at one point
 //! Why so   one pass from the tip to the root, only over the joints that move the frame; a mimic
 //!          joint adds its multiplier times its column to the joint that it follows
 //! Source   velocity conversion matrices of Cartesian control (columns 6 and 3 of V_j)
 //! Checked  tests/it/pinocchio.rs, tests/it/kinematics.rs::jacobian_is_assembled_by_conversion,
-//!          ::jacobian_dot_*, ::relative_jacobian_*
+//!          ::jacobian_dot_*, tests/it/relative_jacobian.rs
 
 use crate::linalg::Matrix;
 use crate::model::{Node, NodeKind};

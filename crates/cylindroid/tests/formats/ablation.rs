@@ -297,7 +297,8 @@ fn no_number_of_the_catalogue_is_silent() {
     for name in catalogue::names() {
         let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap();
         // Numbers of prose are none of the mechanism.
-        let is_prose = |l: &&str| ["#", "source =", "description ="].iter().any(|p| l.starts_with(p));
+        let is_prose =
+            |l: &&str| ["#", "source =", "description ="].iter().any(|p| l.starts_with(p));
         let text: Vec<&str> = text.lines().filter(|l| !is_prose(l)).collect();
         ablate(name, &text.join("\n"), read_toml);
     }

@@ -20,16 +20,16 @@ pub(crate) fn robots() -> Vec<Mechanism> {
     robots
 }
 
-fn end_effector(robot: &Mechanism, random: &mut Random) -> EndEffector {
+pub(crate) fn end_effector(robot: &Mechanism, random: &mut Random) -> EndEffector {
     EndEffector { frame: robot.tool(), frame_from_tool: random.pose() }
 }
 
 /// q moved by h along unit rate k, on the group where the coordinate is a rotation vector.
-fn moved(robot: &Mechanism, q: &[f64], rates: &[f64], h: f64) -> Vec<f64> {
+pub(crate) fn moved(robot: &Mechanism, q: &[f64], rates: &[f64], h: f64) -> Vec<f64> {
     robot.integrate(q, rates, h).unwrap()
 }
 
-fn unit(n: usize, k: usize) -> Vec<f64> {
+pub(crate) fn unit(n: usize, k: usize) -> Vec<f64> {
     let mut e = vec![0.0; n];
     e[k] = 1.0;
     e
@@ -94,45 +94,6 @@ fn jacobian_by_finite_differences() {
             }
         }
     }
-}
-
-/// The derivative of base_from_tool, at the tool's origin in the axes of the base; zeros for joints
-/// that carry both; the ordinary Jacobian from a base at rest.
-#[test]
-fn relative_jacobian_by_finite_differences() {
-    let (mut random, h) = (Random(33), 1e-5);
-    for robot in robots() {
-        let ids: Vec<_> = robot.frame_ids().collect();
-        for _ in 0..5 {
-            let tool = end_effector(&robot, &mut random);
-            let frame = ids[(random.next_u64() % ids.len() as u64) as usize];
-            let base = EndEffector { frame, frame_from_tool: random.pose() };
-            let q = random.q(&robot);
-            let seen = |q: &[f64]| {
-                let state = robot.state(q).unwrap();
-                state.pose(base).unwrap().inverse() * state.pose(tool).unwrap()
-            };
-            let (state, pose) = (robot.state(&q).unwrap(), seen(&q));
-            let found = state.relative_jacobian(tool, base).unwrap();
-            for k in 0..robot.n() {
-                let at =
-                    |h: f64| log(seen(&moved(&robot, &q, &unit(robot.n(), k), h)) * pose.inverse());
-                let expected = ((at(h) - at(-h)) * (0.5 / h)).at_point(pose.translation);
-                let what = format!("{} column {k}", robot.name());
-                let scale = 1e-9 * (1.0 + robot.reach());
-                assert_close(&what, found.column(k), &expected.to_array(), scale);
-            }
-            // Relative to itself nothing moves, exactly.
-            let own = state.relative_jacobian(tool, robot.tool()).unwrap();
-            assert!(own.as_slice().iter().all(|x| *x == 0.0), "{}", robot.name());
-        }
-    }
-    let arm = catalogue::load("ur5e").unwrap();
-    let state = arm.state(arm.home()).unwrap();
-    let root = arm.frame(&arm.links()[0].name).unwrap();
-    let from_root = state.relative_jacobian(arm.tool(), root).unwrap();
-    let expected = state.jacobian(arm.tool(), ReferenceFrame::LocalWorldAligned).unwrap();
-    assert_matrix("from the root", &from_root, &expected, 1e-15);
 }
 
 /// J_world = Ad(world_from_tool) J_local, exactly; J rates = twist.

@@ -30,6 +30,7 @@ mod mass_matrix;
 mod model;
 mod parameters;
 mod pinocchio;
+mod relative_jacobian;
 mod screws;
 mod servo;
 mod simd;
