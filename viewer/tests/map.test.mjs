@@ -111,7 +111,7 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
     await picture(page, "map-clicked");
     await panel.getByRole("button", { name: "Remove" }).click();
     await panel.waitFor({ state: "hidden" });
-    assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.map.cloud.group.children.length), 0);
+    assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.map.cloud.group.children.length), 1, "the empty group of loci");
   }));
 
 test("the file of a map is drawn in the plane of its mechanism", () =>
@@ -121,6 +121,20 @@ test("the file of a map is drawn in the plane of its mechanism", () =>
     await page.locator('[data-panel="map"]').getByText(/map\.json, \d+ points/).waitFor();
     const columns = await table(page);
     assert.ok(columns["type_two"] && columns["mode"] && !columns["z"]);
+    // Its loci are curves, of the kinds that the file has.
+    const { loci } = JSON.parse(await readFile(join(folder, "map.json"), "utf8"));
+    const ends = await page.evaluate(() => /** @type {any} */ (window).viewer.map.loci.group.children.map((/** @type {any} */ line) => {
+      const start = line.geometry.getAttribute("instanceStart");
+      return [start.getX(0), start.getY(0), start.getZ(0)];
+    }));
+    const long = loci.filter((/** @type {any} */ { points }) => points.length > 1);
+    assert.equal(ends.length, long.length);
+    assert.ok(long.length > 3);
+    for (const [i, { points }] of long.entries()) assert.ok(apart(ends[i], [...points[0], 0]) < 1e-6, `${ends[i]} ${points[0]}`);
+    for (const kind of new Set(loci.map((/** @type {any} */ locus) => locus.kind))) {
+      const curves = loci.filter((/** @type {any} */ locus) => locus.kind === kind).length;
+      await page.locator('[data-panel="map"]').getByText(`${kind}: ${curves} curve${curves > 1 ? "s" : ""}`, { exact: true }).waitFor();
+    }
     await page.locator('[data-panel="map"]').getByLabel("Colour", { exact: true }).selectOption("type_two");
     await picture(page, "map-five-bar");
   }));

@@ -1,6 +1,6 @@
 /** The map of a sweep: its points in the view, what colours them, a cut, and the robot at the point that is clicked or named. */
 import { Choice } from "../controls/choice";
-import { h, text } from "../dom";
+import { fill, h, text } from "../dom";
 import { count, fixed, short } from "../format";
 import { panel } from "../panels/panel";
 import type { Scene } from "../protocol";
@@ -9,6 +9,7 @@ import type { Stage } from "../scene/stage";
 import type { Session } from "../session";
 import { Cloud, type Axis } from "./cloud";
 import { rangeOf } from "./colours";
+import { legendOf, Loci } from "./loci";
 import { readTable, type Table } from "./table";
 
 /** Columns that number rows. */
@@ -21,6 +22,7 @@ const SIZE = { least: 1, most: 12, first: 3 };
 export class MapPanel {
   readonly panel = panel("map", "Map", true);
   readonly cloud: Cloud;
+  readonly loci = new Loci();
   private readonly colour = new Choice("Colour", (name) => this.paint(name));
   private readonly axis = new Choice("Cut", (axis) => this.cut(AXES.find((one) => one === axis) ?? null));
   private readonly low = h("span", { class: "number" });
@@ -30,6 +32,7 @@ export class MapPanel {
   private readonly size = h("input", { type: "range", min: SIZE.least, max: SIZE.most, step: 0.5, value: SIZE.first, "aria-label": "Size of points [pixels]" });
   private readonly place = h("input", { type: "range", step: "any", "aria-label": "Place of the cut [m]" });
   private readonly placeWords = h("span", { class: "note" });
+  private readonly legend = h("div", {});
   private table: Table | null = null;
   private cutAxis: Axis | null = null;
   /** The column that colours. */
@@ -37,6 +40,7 @@ export class MapPanel {
 
   constructor(private readonly session: Session, stage: Stage, private readonly say: (words: string, bad?: boolean) => void, picking: Picking) {
     this.cloud = new Cloud(stage, (row) => this.pick(row), picking);
+    this.cloud.group.add(this.loci.group);
     this.size.addEventListener("input", () => {
       fillSlider(this.size);
       this.cloud.resize(this.size.valueAsNumber);
@@ -48,6 +52,7 @@ export class MapPanel {
       this.colour.element,
       h("div", { class: "ramp-line" }, this.low, h("span", { class: "ramp" }), this.high),
       h("label", { class: "line" }, h("span", { class: "note" }, "Points"), this.size),
+      this.legend,
       this.axis.element,
       h("label", { class: "line" }, this.placeWords, this.place),
       h("div", { class: "row" },
@@ -76,6 +81,8 @@ export class MapPanel {
   private show(table: Table | null): void {
     this.table = table;
     this.panel.element.hidden = !table;
+    this.loci.show(table?.loci ?? []);
+    fill(this.legend, ...legendOf(table?.loci ?? []));
     this.cloud.show(table, this.size.valueAsNumber);
     if (!table) return;
     this.panel.note(`${table.name}, ${count(table.rows, "point")}`);

@@ -12,6 +12,14 @@ export type Table = {
   rows: number;
   /** Numbers of each column, not a number where a row has none. */
   columns: Map<string, Float64Array>;
+  loci: Locus[];
+};
+
+/** A curve of a map on which the mechanism is singular or at a limit. */
+export type Locus = {
+  kind: string;
+  /** Places [m], one after the other. */
+  places: number[];
 };
 
 /** Null for a file that is a motion. Throws an error that names the file and the place. */
@@ -43,7 +51,7 @@ async function fromParquet(file: File): Promise<Table> {
         for (let i = 0; i < columnData.length; i += 1) column[rowStart + i] = numberOf(columnData[i]);
       },
     });
-    return { name: file.name, rows, columns };
+    return { name: file.name, rows, columns, loci: [] };
   } catch (error) {
     throw new Error(`${file.name} is no Parquet file that can be read: ${error instanceof Error ? error.message : String(error)}.`);
   }
@@ -63,7 +71,7 @@ function fromCsv(name: string, text: string): Table | null {
       if (column) column[i - 1] = cell === "" ? NaN : numberOf(cell);
     });
   }
-  return { name, rows: lines.length - 1, columns: named(names, columns) };
+  return { name, rows: lines.length - 1, columns: named(names, columns), loci: [] };
 }
 
 /** Null where it is no table with columns and rows. */
@@ -74,7 +82,7 @@ function fromJson(name: string, text: string): Table | null {
   } catch {
     return null; // told as a motion
   }
-  const { columns: given, rows } = (read ?? {}) as { columns?: unknown; rows?: unknown };
+  const { columns: given, rows, axes, held, loci } = (read ?? {}) as Record<string, unknown>;
   if (!Array.isArray(given) || !Array.isArray(rows)) return null;
   const names = given.map((column: unknown) => (typeof column === "string" ? column : String((column as { name?: unknown } | null)?.name)));
   const columns = names.map(() => new Float64Array(rows.length));
@@ -82,7 +90,26 @@ function fromJson(name: string, text: string): Table | null {
     if (!Array.isArray(row) || row.length !== names.length) throw new Error(`${name}, row ${i + 1} is no list of ${names.length} numbers.`);
     columns.forEach((column, k) => (column[i] = numberOf(row[k])));
   });
-  return { name, rows: rows.length, columns: named(names, columns) };
+  return { name, rows: rows.length, columns: named(names, columns), loci: lociOf(list(axes), list(held), list(loci)) };
+}
+
+/** The curves in space: components that are no axis keep what is held, or zero. None where two axes are no places. */
+function lociOf(axes: Entry[], held: Entry[], loci: Entry[]): Locus[] {
+  const places = ["x", "y", "z"].map((name) => ({
+    axis: axes.findIndex((axis) => axis["name"] === name),
+    value: numberOf(held.find((component) => component["name"] === name)?.["value"] ?? 0),
+  }));
+  if (places.filter(({ axis }) => axis >= 0).length < 2) return [];
+  return loci.map((locus) => ({
+    kind: String(locus["kind"]),
+    places: list<unknown[]>(locus["points"]).flatMap((point) => places.map(({ axis, value }) => (axis < 0 ? value : numberOf(point[axis])))),
+  }));
+}
+
+type Entry = Record<string, unknown>;
+
+function list<T = Entry>(value: unknown): T[] {
+  return Array.isArray(value) ? (value as T[]) : [];
 }
 
 /** Columns without a number are left out. */
