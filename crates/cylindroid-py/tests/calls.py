@@ -454,6 +454,8 @@ def methods(grip):
         ("joint_axes", PANDA, {**n, "side": "child"}),
         ("contact_points", TWO_ARM, {"q": TWO_ARM.home}),
         ("jacobian", PANDA, {**n, **REFERENCE, "out": None}),
+        ("relative_jacobian", PANDA,
+         {**n, "base": "link4", "frame": "flange", "tool": np.eye(4)}),
         ("hessian", PANDA, {**n, **REFERENCE}),
         ("jacobian_dot", PANDA, {**n, "qd": q, **REFERENCE}),
         ("analytical_jacobian", PANDA,

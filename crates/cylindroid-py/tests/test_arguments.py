@@ -1,6 +1,8 @@
 """Bad arguments of every public call: an error of the package, with the name of an argument; no
 panic, and no error that NumPy or PyO3 raise."""
 
+import re
+
 import pytest
 from calls import calls, public
 
@@ -50,12 +52,16 @@ OTHER_WORDS = {
 
 
 def is_named(argument, message):
-    """True for the name as it is, or for its words: 'position tolerance'."""
-    words = argument.split("_")
+    """True for the name as it is, or for its words: 'position tolerance'; never for a part of a word."""
+    def says(words):
+        return re.search(rf"(?<!\w){re.escape(words)}(?!\w)", message) is not None
+
+    stems = [word.rstrip("s") for word in argument.split("_")]
     return (
-        argument in message
-        or OTHER_WORDS.get(argument, argument) in message
-        or all(word.rstrip("s") in message for word in words)
+        says(argument)
+        or says(OTHER_WORDS.get(argument, argument))
+        or len(argument) > 2
+        and all(re.search(rf"(?<!\w){re.escape(stem)}", message) for stem in stems)
     )
 
 

@@ -71,6 +71,12 @@ def test_batches_are_their_rows(name):
         np.testing.assert_array_equal(all_poses[i], r.fk_all(Q[i]))
         np.testing.assert_allclose(all_poses[i, r.frames.index(r.tool)], T[i], atol=1e-14)
     assert r.analytical_jacobian(Q).shape == (20, 6, r.n)
+    # Seen from a frame at rest the Jacobian is the ordinary one in its axes, from itself zero.
+    base = r.frames[0]
+    axes = np.kron(np.eye(2), r.fk(Q[0], base)[:3, :3].T)
+    for relative, q in zip(r.relative_jacobian(Q, base), Q):
+        np.testing.assert_allclose(relative, axes @ r.jacobian(q), atol=1e-13)
+    assert not r.relative_jacobian(Q, r.tool).any()
 
 
 @pytest.mark.parametrize("name", ["panda", "ur5e", "youbot", "3r"])

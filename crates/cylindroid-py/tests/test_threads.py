@@ -50,6 +50,7 @@ def beside(call):
         lambda: panda.jacobian_dot(Q, Q),
         lambda: panda.hessian(Q),
         lambda: panda.analytical_jacobian(Q),
+        lambda: panda.relative_jacobian(Q, "link4"),
         lambda: panda.integrate(Q, Q, 0.1),
         lambda: panda.ik(FAR, iterations=2000),
         lambda: panda.ik_all(FAR, iterations=2000),
