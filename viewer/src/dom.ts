@@ -25,6 +25,13 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** A patch of a colour of the style sheet, by its name there without the dashes. */
+export function swatch(colour: string): HTMLElement {
+  const patch = h("span", { class: "swatch" });
+  patch.style.setProperty("--swatch", `var(--${colour})`);
+  return patch;
+}
+
 const SVG = "http://www.w3.org/2000/svg";
 
 /** The same for SVG. */

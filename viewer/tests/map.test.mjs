@@ -36,6 +36,17 @@ const seen = (page, row) => page.evaluate((row) => {
   return { x: box.left + ((x + 1) / 2) * box.width, y: box.top + ((1 - y) / 2) * box.height };
 }, row);
 
+/**
+ * Coordinates of the points of each curve that is drawn.
+ * @param {Page} page
+ * @returns {Promise<number[][]>}
+ */
+const curves = (page) => page.evaluate(() => /** @type {any} */ (window).viewer.map.loci.group.children.map((/** @type {any} */ line) => {
+  const [start, end] = ["instanceStart", "instanceEnd"].map((name) => line.geometry.getAttribute(name));
+  const points = Array.from({ length: start.count }, (_, i) => [start.getX(i), start.getY(i), start.getZ(i)]);
+  return [...points, [end.getX(end.count - 1), end.getY(end.count - 1), end.getZ(end.count - 1)]].flat();
+}));
+
 test("a part of a sweep is drawn, coloured and cut; a click on a point moves the robot there", () =>
   visit(["panda"], async (page) => {
     await run("sweep", "panda", "--samples", "3000", ...QUANTITIES, "--out", "sweep");
@@ -123,20 +134,33 @@ test("the file of a map is drawn in the plane of its mechanism", () =>
     assert.ok(columns["type_two"] && columns["mode"] && !columns["z"]);
     // Its loci are curves, of the kinds that the file has.
     const { loci } = JSON.parse(await readFile(join(folder, "map.json"), "utf8"));
-    const ends = await page.evaluate(() => /** @type {any} */ (window).viewer.map.loci.group.children.map((/** @type {any} */ line) => {
-      const start = line.geometry.getAttribute("instanceStart");
-      return [start.getX(0), start.getY(0), start.getZ(0)];
-    }));
     const long = loci.filter((/** @type {any} */ { points }) => points.length > 1);
-    assert.equal(ends.length, long.length);
+    const drawn = await curves(page);
+    assert.equal(drawn.length, long.length);
     assert.ok(long.length > 3);
-    for (const [i, { points }] of long.entries()) assert.ok(apart(ends[i], [...points[0], 0]) < 1e-6, `${ends[i]} ${points[0]}`);
-    for (const kind of new Set(loci.map((/** @type {any} */ locus) => locus.kind))) {
-      const curves = loci.filter((/** @type {any} */ locus) => locus.kind === kind).length;
-      await page.locator('[data-panel="map"]').getByText(`${kind}: ${curves} curve${curves > 1 ? "s" : ""}`, { exact: true }).waitFor();
+    for (const [i, { points }] of long.entries()) assert.ok(apart(drawn[i] ?? [], points.flatMap((/** @type {number[]} */ point) => [...point, 0])) < 1e-6, `curve ${i}`);
+    for (const kind of new Set(long.map((/** @type {any} */ locus) => locus.kind))) {
+      const count = long.filter((/** @type {any} */ locus) => locus.kind === kind).length;
+      await page.locator('[data-panel="map"]').getByText(`${kind}: ${count} curve${count > 1 ? "s" : ""}`, { exact: true }).waitFor();
     }
     await page.locator('[data-panel="map"]').getByLabel("Colour", { exact: true }).selectOption("type_two");
     await picture(page, "map-five-bar");
+  }));
+
+test("a map at a height is drawn at that height, also one without y", () =>
+  visit(["stewart"], async (page) => {
+    for (const [over, held] of /** @type {const} */ ([[["x=-0.2:0.2:5", "y=-0.2:0.2:5"], "z=1.1"], [["x=-0.2:0.2:5", "z=0.9:1.1:5"], "y=0.05"]])) {
+      const [name, value] = held.split("=");
+      await run("map", "stewart", ...over.flatMap((axis) => ["--over", axis]), "--at", held, "--starts", "1", "--out", "high.json");
+      await openFiles(page, join(folder, "high.json"));
+      await page.waitForFunction(([column, wanted]) => /** @type {any} */ (window).viewer.map.table?.columns.get(column)?.every((/** @type {number} */ x) => Math.abs(x - Number(wanted)) < 1e-12), /** @type {const} */ ([name, value]));
+      const { rows } = JSON.parse(await readFile(join(folder, "high.json"), "utf8"));
+      const places = await page.evaluate(() => [.../** @type {any} */ (window).viewer.map.cloud.points.geometry.getAttribute("position").array]);
+      assert.equal(places.length, 3 * rows.length);
+      const axis = "xyz".indexOf(name ?? "");
+      for (let i = axis; i < places.length; i += 3) assert.ok(Math.abs(places[i] - Number(value)) < 1e-6);
+      for (const points of await curves(page)) for (let i = axis; i < points.length; i += 3) assert.ok(Math.abs((points[i] ?? NaN) - Number(value)) < 1e-6);
+    }
   }));
 
 test("tables that are no maps say so, and motions stay motions", () =>

@@ -95,7 +95,7 @@ const MJCF = '<mujoco model="swing"><worldbody><body name="arm"><joint name="lif
 const SDF = '<sdf version="1.9"><model name="gate"><link name="a"/><link name="b"/><joint name="lift" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>';
 const TOML = 'name = "slide"\n[[joint]]\nname = "lift"\ntype = "prismatic"\nbetween = ["ground", "cart"]\norigin = [0, 0, 0]\naxis = [0, 0, 1]\nactuated = true\n';
 
-test("files of every format open by a drop, alone and in a zip", () =>
+test("MJCF, SDF and mechanism files open by a drop, alone and in a zip", () =>
   visit(["panda"], async (page) => {
     for (const [name, model, text] of /** @type {const} */ ([["swing.xml", "swing", MJCF], ["gate.sdf", "gate", SDF], ["slide.toml", "slide", TOML]])) {
       for (const zipped of [false, true]) {

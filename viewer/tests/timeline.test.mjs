@@ -103,7 +103,7 @@ test("a recording plays to its end, in a loop, faster and slower", () =>
     await page.getByRole("button", { name: "Pause playback" }).click();
   }));
 
-test("marks are where limits and singular values bit, the trail is the way of the tool, and plots leave as PNG", () =>
+test("marks are where limits are active and singular values are lost, the trail is the way of the tool, and plots leave as PNG", () =>
   visit(["panda"], async (page) => {
     await page.getByRole("button", { name: "Record" }).click();
     // Farther out than the arm is long: joints come to their limits, and the arm is stretched.
@@ -124,7 +124,7 @@ test("marks are where limits and singular values bit, the trail is the way of th
       for (const [x = NaN, width = NaN] of drawn) assert.ok(x >= 0 && x + width <= across + 1.5, `${name}: ${drawn} of ${across}`);
       seen += wanted;
     }
-    assert.ok(seen > 0, "nothing bit");
+    assert.ok(seen > 0, "no mark");
 
     const trail = () => page.evaluate(() => {
       const line = /** @type {any} */ (window).viewer.timeline.trail.group.children[0];

@@ -23,7 +23,7 @@ const CRATES: [&str; 3] = ["cylindroid", "cylindroid-cli", "cylindroid-ros2"];
 const USE: &str = r#"fn main() -> Result<(), cylindroid::Error> {
     let panda = cylindroid::load("panda")?;
     let state = panda.state(panda.home())?;
-    assert!(state.pose(panda.tool()).translation.x > 0.1);
+    assert!(state.pose(panda.tool())?.translation.x > 0.1);
     Ok(())
 }
 "#;

@@ -173,8 +173,8 @@ pub(crate) struct JacobianArgs {
     #[arg(long, value_name = "NAME", default_value = "local_world_aligned")]
     pub(crate) reference: ReferenceName,
 
-    /// The twist relative to this frame, which may move: joints that carry both do not count. Its
-    /// point is the frame's origin, its axes are those of the other frame
+    /// The twist of --frame relative to this frame, which may move, at the origin of --frame and in
+    /// the axes of this one; joints that carry both do not count
     #[arg(long, value_name = "FRAME", conflicts_with_all = ["reference", "analytical", "velocities"])]
     pub(crate) relative_to: Option<String>,
 
@@ -194,7 +194,8 @@ pub(crate) struct JacobianArgs {
 
     /// Print the inverse and the joint velocities for this twist `vx,vy,vz,wx,wy,wz` [m/s, rad/s],
     /// or for 1 m/s or 1 rad/s along x, y, z, rx, ry or rz; point and axes are those of --reference
-    #[arg(long, value_name = "TWIST", allow_hyphen_values = true, conflicts_with = "analytical")]
+    #[arg(long, value_name = "TWIST", allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["analytical", "relative_to"])]
     #[arg(help_heading = "Inverse")]
     pub(crate) twist: Option<Motion>,
 

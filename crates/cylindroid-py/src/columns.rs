@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
 use arrow_array::types::Float64Type;
-use arrow_array::{ArrayRef, Float64Array, RecordBatch};
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, RecordBatchOptions};
 use arrow_schema::{DataType, Field, Schema};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyIterator, PyList};
@@ -40,8 +40,8 @@ pub(crate) struct Column {
 }
 
 impl PyColumns {
-    /// Columns of one length.
-    pub(crate) fn of(columns: Vec<Column>) -> Result<Self> {
+    /// Columns of this many rows.
+    pub(crate) fn of(columns: Vec<Column>, rows: usize) -> Result<Self> {
         let (fields, arrays): (Vec<Field>, Vec<ArrayRef>) = columns
             .into_iter()
             .map(|Column { name, unit, values }| {
@@ -50,8 +50,11 @@ impl PyColumns {
                 (field, Arc::new(Float64Array::from(values)) as ArrayRef)
             })
             .unzip();
-        let batch = RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
-            .map_err(|error| Failure::kind(error.to_string()))?;
+        // A mechanism without joints has no column, but rows.
+        let options = RecordBatchOptions::new().with_row_count(Some(rows));
+        let batch =
+            RecordBatch::try_new_with_options(Arc::new(Schema::new(fields)), arrays, &options)
+                .map_err(|error| Failure::kind(error.to_string()))?;
         Ok(Self { batch })
     }
 

@@ -174,6 +174,15 @@ def test_columns_are_read_by_libraries_of_frames():
     assert pyarrow.table(PANDA.columns(np.zeros((0, 7)))).num_rows == 0
 
 
+def test_a_mechanism_without_coordinates_has_rows_without_columns():
+    fixed = cy.parse(
+        "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'>"
+        "<parent link='a'/><child link='b'/></joint></robot>"
+    )
+    columns = fixed.columns(np.zeros((3, 0)))
+    assert len(columns) == 0 and repr(columns).startswith("<Columns of 3 rows")
+
+
 def test_trajectories_have_columns():
     trajectory = cy.Servo(PANDA).simulate(PANDA.home, NEAR, duration=0.05, record=True).trajectory
     columns = trajectory.columns()

@@ -78,6 +78,7 @@ def choices(name, robot):
         **dict.fromkeys(("count", "starts", "iterations", "max_restarts", "seed"), COUNTS),
         **dict.fromkeys(("dt", "duration", "distance", "speed", "acceleration", "length", "angle",
                          "step", "h", "t", "s", "jerk", "velocity"), [0.0, 1.0, []]),
+        "mechanism": list(MECHANISMS.values()),
         "along": MATRICES + [0.0, 1.0],
         "goal": [{}, {"q1": 0.0}, {"j": 0.0}],
         "stiffness": [None, {}, 1.0, []],
@@ -109,7 +110,7 @@ def tried(call, robot):
     """Results of a call with all kinds of small arguments."""
     parameters = [
         p for p in inspect.signature(call).parameters.values()
-        if p.name not in ("self", "mechanism") and p.kind is not p.VAR_KEYWORD
+        if p.name != "self" and p.kind is not p.VAR_KEYWORD
     ]
     needed = [p for p in parameters if p.default is p.empty]
     more = [p for p in parameters if p.default is not p.empty]
@@ -123,7 +124,11 @@ def tried(call, robot):
             try:
                 found = call(**arguments)
                 read(found)
-            except (cy.CylindroidError, TypeError):
+            except TypeError as error:
+                # Of arguments that exclude one another, or that have another type.
+                assert any(name in str(error) for name in arguments), f"{call.__qualname__}: {error}"
+                continue
+            except cy.CylindroidError:
                 continue
             except BaseException as error:
                 shapes = {k: getattr(v, "shape", v) for k, v in arguments.items()}

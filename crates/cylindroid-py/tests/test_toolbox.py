@@ -236,7 +236,12 @@ def test_frames_that_move():
         np.testing.assert_allclose(found[:, i], expected, atol=1e-8)
     own = np.kron(np.eye(2), here[:3, :3].T) @ found
     np.testing.assert_allclose(robot.jacobe(q, None, "link3"), own, atol=1e-15)
-    assert robot.jacobe(np.stack([q, q]), None, "link3").shape == (2, 6, 7)
+    # Rows of a batch, and a tool point.
+    Q, tool = np.stack([q, q + 0.1]), translation("z", 0.1)
+    for jacobian in (robot.jacob0, robot.jacobe):
+        for row, at in zip(jacobian(Q, None, "link3", tool), Q):
+            np.testing.assert_array_equal(row, jacobian(at, None, "link3", tool))
+        assert np.abs(jacobian(q, None, "link3", tool) - jacobian(q, None, "link3")).max() > 1e-3
 
 
 def test_measures_and_derivatives_take_the_arguments_of_the_toolbox():
@@ -246,14 +251,30 @@ def test_measures_and_derivatives_take_the_arguments_of_the_toolbox():
     assert abs(robot.manipulability(q, None, None, None, "minsingular") - values[-1]) < 1e-14
     inverse = robot.manipulability(q, method="invcondition")
     assert abs(inverse - values[-1] / values[0]) < 1e-14
-    H = robot.hessian0(q, None, None, robot.jacob0(q), tool)
+    H = robot.hessian0(q, None, None, robot.jacob0(q, tool=tool), tool)
     np.testing.assert_array_equal(H, robot.hessian0(q, tool=tool))
     assert np.abs(H - robot.hessian0(q)).max() > 1e-3
     R = robot.fkine(q)[:3, :3].T
     for own, world in zip(robot.hessiane(q, tool=tool), H):
         np.testing.assert_allclose(own, np.kron(np.eye(2), R) @ world, atol=1e-14)
-    gradient = robot.jacobm(q, None, None, None, None, "trans")
-    assert gradient.shape == (7, 1) and np.abs(gradient - robot.jacobm(q)).max() > 1e-3
+    gradient = robot.jacobm(q, robot.jacob0(q), robot.hessian0(q), None, None, "trans")
+    for i, step in enumerate(1e-5 * np.eye(7)):
+        ahead, behind = (robot.manipulability(q + s * step, axes="trans") for s in (1, -1))
+        assert abs((ahead - behind) / 2e-5 - gradient[i, 0]) < 1e-7
+    # Matrices of another configuration, and what stood in these places before.
+    with pytest.raises(NotImplementedError, match="^J is another one than that of q"):
+        robot.manipulability(q, robot.jacob0(q + 0.1))
+    with pytest.raises(NotImplementedError, match="^Je is another one"):
+        robot.hessiane(q, Je=robot.jacob0(q))
+    for call in (
+        lambda: robot.manipulability(q, "invcondition"),
+        lambda: robot.jacobm(q, "trans"),
+        lambda: robot.jacob0_dot(q, q, "link4"),
+    ):
+        with pytest.raises(cy.InvalidOptionError, match="^J0? = .*a matrix of numbers is needed"):
+            call()
+    with pytest.raises(cy.InvalidOptionError, match=r"^J has the shape \(3, 7\): \(6, 7\)"):
+        robot.manipulability(q, np.zeros((3, 7)))
 
 
 def test_poses_without_the_base():
@@ -295,6 +316,8 @@ def test_what_is_missing_says_what_to_use():
         robot.partial_fkine0
     with pytest.raises(NotImplementedError, match="pass q"):
         robot.hessian0(J0=np.zeros((6, 7)))
+    with pytest.raises(NotImplementedError, match="link4' moves: targets"):
+        robot.ikine_LM(robot.fkine(robot.qr), start="link4")
     with pytest.raises(NotImplementedError, match="pass q"):
         robot.manipulability(J=np.zeros((6, 7)))
     with pytest.raises(NotImplementedError, match="pass q"):

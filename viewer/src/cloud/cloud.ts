@@ -37,7 +37,7 @@ export class Cloud {
       const places = new Float32Array(3 * table.rows);
       for (let i = 0; i < table.rows; i += 1) places.set([x?.[i] ?? NaN, y?.[i] ?? NaN, z?.[i] ?? 0], 3 * i);
       const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(places, 3));
-      const material = new PointsMaterial({ size, sizeAttenuation: false, vertexColors: true, clippingPlanes: this.isCut ? [this.plane] : [] });
+      const material = new PointsMaterial({ size, sizeAttenuation: false, vertexColors: true, clippingPlanes: this.planes() });
       this.points = new Points(geometry, material);
       this.points.frustumCulled = false;
       this.group.add(this.points);
@@ -62,8 +62,19 @@ export class Cloud {
       this.plane.normal.set(axis === "x" ? -1 : 0, axis === "y" ? -1 : 0, axis === "z" ? -1 : 0);
       this.plane.constant = at;
     }
-    if (this.points) this.points.material.clippingPlanes = this.isCut ? [this.plane] : [];
+    if (this.points) this.points.material.clippingPlanes = this.planes();
     this.stage.invalidate();
+  }
+
+  /** The planes that cut. */
+  planes(): Plane[] {
+    return this.isCut ? [this.plane] : [];
+  }
+
+  /** False for a row that is cut away. */
+  shows(row: number): boolean {
+    const places = this.points?.geometry.getAttribute("position");
+    return !places || !this.isCut || this.plane.distanceToPoint(new Vector3().fromBufferAttribute(places, row)) >= 0;
   }
 
   /** Where the points are (m). */

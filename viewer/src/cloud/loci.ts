@@ -1,11 +1,8 @@
 /** The loci of a map: curves in the view, by kind. */
-import { Color, Group } from "three";
-import { Line2 } from "three/addons/lines/Line2.js";
-import { LineGeometry } from "three/addons/lines/LineGeometry.js";
-import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { h } from "../dom";
+import { Group, type Plane } from "three";
+import { h, swatch } from "../dom";
 import { count } from "../format";
-import { colour, onTheme } from "../theme";
+import { clearCurves, curve, curvePaint } from "../scene/curve";
 import type { Locus } from "./table";
 
 /** Colours of the style sheet; other kinds have the last. */
@@ -14,30 +11,19 @@ const WIDTH = 2; // pixels
 
 export class Loci {
   readonly group = new Group();
-  private readonly paints = new Map<string, LineMaterial>();
+  private readonly paints = new Map(KINDS.map(([, colour]) => [colour as string, curvePaint(colour, WIDTH)]));
 
-  constructor() {
-    for (const [, name] of KINDS) {
-      const paint = new LineMaterial({ linewidth: WIDTH });
-      const wear = (): void => void (paint.color = new Color(colour(name)));
-      onTheme(wear);
-      wear();
-      this.paints.set(name, paint);
+  show(loci: Locus[]): void {
+    clearCurves(this.group);
+    for (const { kind, places } of loci) {
+      const paint = this.paints.get(colourOf(kind));
+      if (paint) this.group.add(curve(places, paint));
     }
   }
 
-  show(loci: Locus[]): void {
-    for (const child of [...this.group.children]) {
-      (child as Line2).geometry.dispose();
-      child.removeFromParent();
-    }
-    for (const { kind, places } of loci) {
-      const paint = this.paints.get(colourOf(kind));
-      if (!paint || places.length < 6) continue;
-      const line = new Line2(new LineGeometry().setPositions(places), paint);
-      line.frustumCulled = false;
-      this.group.add(line);
-    }
+  /** Leaves out what lies on the far side of these planes. */
+  cut(planes: Plane[]): void {
+    for (const paint of this.paints.values()) paint.clippingPlanes = planes;
   }
 }
 
@@ -45,10 +31,8 @@ export class Loci {
 export function legendOf(loci: Locus[]): HTMLElement[] {
   const kinds = [...new Set(loci.map(({ kind }) => kind))];
   return kinds.map((kind) => {
-    const swatch = h("span", { class: "swatch" });
-    swatch.style.setProperty("--swatch", `var(--${colourOf(kind)})`);
-    const words = `${kind}: ${count(loci.filter((locus) => locus.kind === kind).length, "curve")}`;
-    return h("div", { class: "row" }, swatch, h("span", { class: "note" }, words));
+    const curves = loci.filter((locus) => locus.kind === kind).length;
+    return h("div", { class: "row" }, swatch(colourOf(kind)), h("span", { class: "note" }, `${kind}: ${count(curves, "curve")}`));
   });
 }
 

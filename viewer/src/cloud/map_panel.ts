@@ -123,6 +123,7 @@ export class MapPanel {
     fillSlider(this.place);
     text(this.placeWords, this.cutAxis ? `Cut at ${fixed(at, 2)} m` : "Cut at");
     this.cloud.cut(this.cutAxis, at);
+    this.loci.cut(this.cloud.planes());
   }
 
   /** Moves the robot to the configuration of a row; coordinates that it has not stay. */
@@ -152,12 +153,12 @@ export class MapPanel {
     else this.say(`${table.name} has no point ${number}.`, true);
   }
 
-  /** The point where what colours is smallest (-1) or largest (1). */
+  /** The point, of those that are not cut away, where what colours is smallest (-1) or largest (1). */
   private pickExtreme(sign: -1 | 1): void {
     const values = this.table?.columns.get(this.painted);
     let best = -1;
     values?.forEach((value, row) => {
-      if (Number.isFinite(value) && (best < 0 || sign * value > sign * (values[best] ?? NaN))) best = row;
+      if (Number.isFinite(value) && this.cloud.shows(row) && (best < 0 || sign * value > sign * (values[best] ?? NaN))) best = row;
     });
     if (best >= 0) this.pick(best);
     else this.say(`${this.painted} has no finite value.`, true);

@@ -6,6 +6,7 @@ const MOST = 2_000_000;
 const LARGEST = 256 << 20;
 /** Columns of strings, such as classes of screw systems, have no colour. */
 const TIME = "time";
+const PLACES = ["x", "y", "z"];
 
 export type Table = {
   name: string;
@@ -90,17 +91,24 @@ function fromJson(name: string, text: string): Table | null {
     if (!Array.isArray(row) || row.length !== names.length) throw new Error(`${name}, row ${i + 1} is no list of ${names.length} numbers.`);
     columns.forEach((column, k) => (column[i] = numberOf(row[k])));
   });
-  return { name, rows: rows.length, columns: named(names, columns), loci: lociOf(list(axes), list(held), list(loci)) };
+  const found = named(names, columns);
+  // A place that the map holds is that of every row.
+  for (const component of list(held)) {
+    const place = String(component["name"]);
+    if (PLACES.includes(place) && !found.has(place)) found.set(place, new Float64Array(rows.length).fill(numberOf(component["value"])));
+  }
+  return { name, rows: rows.length, columns: found, loci: lociOf(list(axes), list(held), list(loci)) };
 }
 
 /** The curves in space: components that are no axis keep what is held, or zero. None where two axes are no places. */
 function lociOf(axes: Entry[], held: Entry[], loci: Entry[]): Locus[] {
-  const places = ["x", "y", "z"].map((name) => ({
+  const places = PLACES.map((name) => ({
     axis: axes.findIndex((axis) => axis["name"] === name),
     value: numberOf(held.find((component) => component["name"] === name)?.["value"] ?? 0),
   }));
   if (places.filter(({ axis }) => axis >= 0).length < 2) return [];
-  return loci.map((locus) => ({
+  // A curve has two points at least.
+  return loci.filter((locus) => list(locus["points"]).length > 1).map((locus) => ({
     kind: String(locus["kind"]),
     places: list<unknown[]>(locus["points"]).flatMap((point) => places.map(({ axis, value }) => (axis < 0 ? value : numberOf(point[axis])))),
   }));

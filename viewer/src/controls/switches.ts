@@ -1,5 +1,5 @@
 /** A switch for each overlay, with its unit and frame; and for the model's own shapes. */
-import { h, Kept } from "../dom";
+import { h, Kept, swatch } from "../dom";
 import { overlayColour, type Overlays } from "../overlays/overlays";
 import { icon } from "../icons";
 import { panel } from "../panels/panel";
@@ -46,7 +46,5 @@ export class Switches {
 }
 
 function row(box: HTMLInputElement, colour: string, title: string, note: string): HTMLElement {
-  const swatch = h("span", { class: "swatch" });
-  swatch.style.setProperty("--swatch", `var(--${colour})`);
-  return h("label", { class: "overlay" }, box, swatch, h("span", { class: "what" }, title), h("span", { class: "note" }, note));
+  return h("label", { class: "overlay" }, box, swatch(colour), h("span", { class: "what" }, title), h("span", { class: "note" }, note));
 }

@@ -1,6 +1,6 @@
 /** All overlays: which are on, their drawings, and their words in the legend. */
 import { Group } from "three";
-import { h, Kept, text } from "../dom";
+import { h, Kept, swatch, text } from "../dom";
 import { isEmpty, type OverlayInfo, type OverlayName, type Scene, type State } from "../protocol";
 import type { Label, Labels } from "../scene/labels";
 import { discard } from "../scene/shapes";
@@ -113,7 +113,5 @@ function drawOne<K extends OverlayName>(name: K, group: Group, context: Context)
 }
 
 function legendLine(info: OverlayInfo, words: HTMLElement | null): HTMLElement {
-  const swatch = h("span", { class: "swatch" });
-  swatch.style.setProperty("--swatch", `var(--${overlayColour(info.name)})`);
-  return h("div", {}, swatch, h("span", {}, h("b", {}, info.title), words));
+  return h("div", {}, swatch(overlayColour(info.name)), h("span", {}, h("b", {}, info.title), words));
 }

@@ -1,9 +1,6 @@
 /** The way of the tool through a recording, as a line in the view. */
-import { Line2 } from "three/addons/lines/Line2.js";
-import { LineGeometry } from "three/addons/lines/LineGeometry.js";
-import { LineMaterial } from "three/addons/lines/LineMaterial.js";
-import { Color, Group } from "three";
-import { colour, onTheme } from "../theme";
+import { Group } from "three";
+import { clearCurves, curve, curvePaint } from "../scene/curve";
 import type { Columns } from "./columns";
 
 /** Samples closer than this share of the robot's size make no point of the line. */
@@ -12,19 +9,10 @@ const WIDTH = 2.5; // pixels
 
 export class Trail {
   readonly group = new Group();
-  private readonly paint = new LineMaterial({ linewidth: WIDTH, depthTest: false, depthWrite: false, transparent: true, opacity: 0.85 });
-
-  constructor() {
-    const wear = (): void => void (this.paint.color = new Color(colour("c-principal")));
-    onTheme(wear);
-    wear();
-  }
+  private readonly paint = curvePaint("c-principal", WIDTH, { depthTest: false, depthWrite: false, transparent: true, opacity: 0.85 });
 
   clear(): void {
-    for (const child of [...this.group.children]) {
-      (child as Line2).geometry.dispose();
-      child.removeFromParent();
-    }
+    clearCurves(this.group);
   }
 
   /** `size`: of the robot (m). */
@@ -32,9 +20,8 @@ export class Trail {
     this.clear();
     const points = wayOf(columns, CLOSE * size);
     if (points.length < 6) return;
-    const line = new Line2(new LineGeometry().setPositions(points), this.paint);
+    const line = curve(points, this.paint);
     line.renderOrder = 1;
-    line.frustumCulled = false;
     this.group.add(line);
   }
 }

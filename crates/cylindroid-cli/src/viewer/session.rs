@@ -219,11 +219,11 @@ impl Session {
             };
         }
         // Non-finite configurations are rejected.
-        let moved = moved.and_then(|()| self.state.set(&q));
-        match moved.and_then(|()| self.state.pose(self.options.end_effector)) {
-            Ok(tool) if is_driven => self.target = tool,
-            Ok(_) => {}
-            Err(error) => (self.trouble, self.is_resting) = (Some(error), true),
+        if let Err(error) = moved.and_then(|()| self.state.set(&q)) {
+            (self.trouble, self.is_resting) = (Some(error), true);
+        }
+        if is_driven && let Ok(tool) = self.state.pose(self.options.end_effector) {
+            self.target = tool;
         }
         self.state.q() != before || self.is_resting || first
     }

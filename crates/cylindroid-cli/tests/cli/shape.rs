@@ -147,7 +147,7 @@ fn jacobian_has_a_derivative_and_analytical_rates() {
     }
     assert_eq!(relative["rank"], 3);
     let shown = text(&["jacobian", "panda", "--relative-to", "link4"]);
-    assert!(shown.contains("the frame's origin, axes of 'link4', relative to it"), "{shown}");
+    assert!(shown.contains("relative to 'link4', in its axes, at the frame's origin"), "{shown}");
 }
 
 #[test]

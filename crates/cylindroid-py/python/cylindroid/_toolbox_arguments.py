@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,8 +23,8 @@ SEARCH = {"k", "kj", "ks", "method", "kq", "km", "ps", "pi", "pinv", "pinv_dampi
 MOST_OPTIONS = 6
 
 
-def kept(name: str) -> Any:
-    """A property of n finite numbers that `Robot` keeps; both ways they are copied."""
+def stored_vector(name: str, doc: str) -> Any:
+    """A property of n finite numbers that `Robot` stores; both ways they are copied."""
 
     def read(robot: Any) -> NDArray[np.float64]:
         return robot._now[name].copy()
@@ -38,7 +38,26 @@ def kept(name: str) -> Any:
             raise InvalidOptionError(f"{name}: {robot.n} finite numbers are needed")
         robot._now[name] = values
 
-    return property(read, write)
+    return property(read, write, doc=doc)
+
+
+def check_given(name: str, given: Any, own: Callable[[], NDArray[np.float64]] | None) -> None:
+    """Raises for a matrix that is not that of the configuration, `own`: there is none without q."""
+    if given is None:
+        return
+    if own is None:
+        raise NotHere(f"{name} without q is not in cylindroid.rtb; pass q")
+    expected = own()
+    try:
+        found = np.asarray(given, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InvalidOptionError(f"{name} = {given!r}: a matrix of numbers is needed") from error
+    if found.shape != expected.shape:
+        raise InvalidOptionError(
+            f"{name} has the shape {found.shape}: {expected.shape} is needed, that of q"
+        )
+    if not np.allclose(found, expected, rtol=1e-9, atol=1e-9):
+        raise NotHere(f"{name} is another one than that of q, which is not in cylindroid.rtb")
 
 
 def measure(spectrum: Any, method: str, possible: int) -> float:
@@ -68,7 +87,7 @@ def task_of(axes: str | ArrayLike) -> str:
     return _chosen(mask)
 
 
-def seen(pose: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArray[np.float64]:
+def in_axes_of(pose: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArray[np.float64]:
     """Twists, (..., 6, n), in the axes of a pose, (..., 4, 4)."""
     axes = np.zeros((*pose.shape[:-2], 6, 6))
     axes[..., :3, :3] = axes[..., 3:, 3:] = np.swapaxes(pose[..., :3, :3], -1, -2)
@@ -86,7 +105,7 @@ def check_search(options: Sequence[Any], search: Mapping[str, Any], joint_limits
         raise NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
 
 
-def searched(
+def inverse_kinematics(
     mechanism: Mechanism,
     target: ArrayLike,
     frame: str,

@@ -29,9 +29,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import Mechanism, load
 from ._toolbox import ROOT, NotHere, instead_of, is_toolbox_robot, mechanism_of
-from ._toolbox_arguments import AXES, check_search, kept, measure, searched, seen, task_of
+from ._toolbox_arguments import (
+    AXES,
+    check_given,
+    check_search,
+    in_axes_of,
+    inverse_kinematics,
+    measure,
+    stored_vector,
+    task_of,
+)
 
 __all__ = ["IKSolution", "Robot"]
+
 
 @dataclass(frozen=True)
 class IKSolution:
@@ -126,14 +136,9 @@ class Robot:
         """The `qr` of the robot of the Toolbox, otherwise the home configuration, (n,)."""
         return self.configs.get("qr", self.mechanism.home).copy()
 
-    q = kept("q")
-    """A configuration to keep with the robot, (n,) [rad or m]; zero at first."""
-
-    qd = kept("qd")
-    """Joint velocities to keep with the robot, (n,) [rad/s or m/s]; zero at first."""
-
-    qdd = kept("qdd")
-    """Joint accelerations to keep with the robot, (n,) [rad/s^2 or m/s^2]; zero at first."""
+    q = stored_vector("q", "A configuration to keep, (n,) [rad or m]; zero at first.")
+    qd = stored_vector("qd", "Joint velocities to keep, (n,) [rad/s or m/s]; zero at first.")
+    qdd = stored_vector("qdd", "Joint accelerations, (n,) [rad/s^2 or m/s^2]; zero at first.")
 
     def isrevolute(self, j: int) -> bool:
         """True if coordinate j is an angle."""
@@ -184,7 +189,7 @@ class Robot:
     ) -> NDArray[np.float64]:
         """The pose of the end effector, (4, 4) or (N, 4, 4): `Mechanism.fk`.
 
-        With `start` that in this frame; without the base that in the frame of the first link.
+        With `start` in this frame; without the base, which robots of the Toolbox have, in its frame.
         """
         pose = self.mechanism.fk(q, end or self._end, tool)
         if start is None and not include_base:
@@ -196,7 +201,6 @@ class Robot:
         return self.mechanism.fk_all(q)
 
     def _is_fixed(self, start: str) -> bool:
-        """True for a frame that no joint moves."""
         return not np.any(self.mechanism.jacobian(self.qr, start))
 
     def _from_base(self, start: str | None, what: str) -> None:
@@ -234,7 +238,7 @@ class Robot:
     ) -> NDArray[np.float64]:
         """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n); as `jacob0`."""
         if start is not None:
-            return seen(self.fkine(q, end, start, tool), self.jacob0(q, end, start, tool))
+            return in_axes_of(self.fkine(q, end, start, tool), self.jacob0(q, end, start, tool))
         return self.mechanism.jacobian(q, end or self._end, "local", tool)
 
     def hessian0(
@@ -245,9 +249,8 @@ class Robot:
         J0: ArrayLike | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n); from q, `J0` changes nothing."""
-        if q is None:
-            raise NotHere("the Hessian of a Jacobian alone is not in cylindroid.rtb; pass q")
+        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n); `J0` must be that of q."""
+        check_given("J0", J0, None if q is None else lambda: self.jacob0(q, end, None, tool))
         self._from_base(start, "the Hessian")
         return self.mechanism.hessian(q, end or self._end, "local_world_aligned", tool)
 
@@ -260,8 +263,9 @@ class Robot:
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n); as `hessian0`."""
-        found = self.hessian0(q, end, start, Je, tool)
-        return seen(self.fkine(q, end, tool=tool)[..., None, :, :], found)
+        check_given("Je", Je, None if q is None else lambda: self.jacobe(q, end, None, tool))
+        found = self.hessian0(q, end, start, None, tool)
+        return in_axes_of(self.fkine(q, end, tool=tool)[..., None, :, :], found)
 
     def jacob0_dot(
         self,
@@ -272,17 +276,13 @@ class Robot:
         *,
         end: str | None = None,
     ) -> NDArray[np.float64]:
-        """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`.
-
-        A Jacobian `J0` beside q changes nothing.
-        """
+        """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`; `J0` must be that of q."""
         if representation is not None:
             raise NotHere(
                 "the derivative of an analytical Jacobian is not in cylindroid.rtb; without "
                 "representation it is that of the geometric one"
             )
-        if q is None:
-            raise NotHere("the derivative of a Jacobian alone is not in cylindroid.rtb; pass q")
+        check_given("J0", J0, None if q is None else lambda: self.jacob0(q, end))
         return self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
 
     def jacob0_analytical(
@@ -328,8 +328,8 @@ class Robot:
         axes: str | ArrayLike = "all",
     ) -> NDArray[np.float64]:
         """The gradient of Yoshikawa's manipulability at q or `qr`, (n, 1); NaN where there is none."""
-        if q is None and (J is not None or H is not None):
-            raise NotHere("the gradient of matrices alone is not in cylindroid.rtb; pass q")
+        check_given("J", J, None if q is None else lambda: self.jacob0(q, end))
+        check_given("H", H, None if q is None else lambda: self.hessian0(q, end))
         self._from_base(start, "the gradient")
         found = self.mechanism.manipulability_gradient(
             self.qr if q is None else q,
@@ -356,7 +356,7 @@ class Robot:
         q : array_like, (n,) or (N, n), optional
             Default: `qr`.
         J : array_like, optional
-            Beside q it changes nothing; alone it is not accepted.
+            That of q.
         end : str, optional
             A frame by name.
         start : str, optional
@@ -376,8 +376,7 @@ class Robot:
             raise NotHere("method = 'asada' is not in cylindroid.rtb; use Mechanism.manipulability")
         if method not in ("yoshikawa", "minsingular", "invcondition"):
             raise ValueError(f"method = {method!r}: 'yoshikawa', 'minsingular' or 'invcondition'")
-        if q is None and J is not None:
-            raise NotHere("the manipulability of J alone is not in cylindroid.rtb; pass q")
+        check_given("J", J, None if q is None else lambda: self.jacob0(q, end))
         self._from_base(start, "manipulability")
         q = self.mechanism.ordered(self.qr if q is None else q)
         found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
@@ -435,7 +434,7 @@ class Robot:
                 raise NotHere(f"start = {start!r} moves: targets are in frames at rest here")
             Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
         check_search(options, search, joint_limits)
-        found = searched(
+        found = inverse_kinematics(
             self.mechanism, Tep, end or self._end, q0, ilimit * slimit, tol, mask, seed or 0
         )
         residual = 0.5 * (found.position_error**2 + found.orientation_error**2)

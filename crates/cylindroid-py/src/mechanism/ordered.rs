@@ -77,6 +77,9 @@ impl PyMechanism {
     fn columns(&self, q: Coordinates<'_>) -> Result<PyColumns> {
         let rows = Rows::of(&self.inner, "q", &q)?;
         let about = self.inner.coordinates().iter().map(|c| (c.name.clone(), c.kind.unit()));
-        PyColumns::of(columns::transposed(rows.values, rows.width, about).collect())
+        PyColumns::of(
+            columns::transposed(rows.values, rows.width, about).collect(),
+            rows.count.unwrap_or(1),
+        )
     }
 }

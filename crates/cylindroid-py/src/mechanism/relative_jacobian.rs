@@ -12,7 +12,7 @@ impl PyMechanism {
     /// The Jacobian of a tool relative to another frame, which may move: `twist = J @ qd` of the tool
     /// as seen from `base`, its point the tool's origin, its axes those of `base`.
     ///
-    /// Joints that carry both have zeros.
+    /// Joints that carry both have zeros, unless a joint between them follows such a joint.
     ///
     /// Parameters
     /// ----------

@@ -130,7 +130,7 @@ impl PyTrajectory {
             [("position_error", "m"), ("orientation_error", "rad"), ("singular_ratio", "1")];
         let errors = about.into_iter().zip(&self.errors);
         all.extend(errors.map(|((name, unit), values)| one(name, unit, values.clone())));
-        PyColumns::of(all)
+        PyColumns::of(all, self.time.len())
     }
 
     fn __len__(&self) -> usize {

@@ -167,7 +167,7 @@ impl FrameGoal {
         q: &[f64],
         (iterations, restarts): (usize, usize),
     ) -> Result<Solution> {
-        let pose = mechanism.state(q)?.tip(self.end_effector).world_from_tip;
+        let pose = mechanism.state(q)?.pose_of(self.end_effector);
         let mut task = self.task;
         if mechanism.dimension() == Dimension::Planar {
             for (on, in_plane) in task.components.iter_mut().zip(Task::PLANAR.components) {

@@ -142,7 +142,7 @@ impl GoalRows {
             }
             (Source::Gaze { .. }, Objective::Gaze { end_effector, point }) => {
                 let error = Gaze { end_effector, point }.error(state);
-                let axes = state.tip(end_effector).world_from_tip.rotation.matrix();
+                let axes = state.pose_of(end_effector).rotation.matrix();
                 let Vec3 { x, y, .. } = axes.tr_mul(error);
                 Twist { linear: Vec3::ZERO, angular: Vec3::new(x, y, 0.0) }
             }
@@ -183,7 +183,7 @@ impl GoalRows {
                 .jacobian_into(state, &mut self.jacobian),
             (Source::Gaze { memory, world }, Objective::Gaze { end_effector, point }) => {
                 Gaze { end_effector, point }.jacobian_into(state, memory, world);
-                let axes = state.tip(end_effector).world_from_tip.rotation.matrix();
+                let axes = state.pose_of(end_effector).rotation.matrix();
                 for j in 0..world.cols() {
                     let column = world.column(j);
                     let own = axes.tr_mul(Vec3::new(column[0], column[1], column[2]));
@@ -268,7 +268,7 @@ mod tests {
             let mut state = robot.state(&q).unwrap();
             let mut masses = MassMatrix::new(&robot);
             let center = masses.center_of_mass(&state, &mut Matrix::zeros(3, n)).unwrap().1;
-            let (a, b) = (state.tip(left).world_from_tip, state.tip(right).world_from_tip);
+            let (a, b) = (state.pose_of(left), state.pose_of(right));
             for goal in [
                 Goal::pose(left, a),
                 Goal::relative(right, left, a.inverse() * b),

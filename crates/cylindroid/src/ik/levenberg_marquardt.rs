@@ -367,7 +367,7 @@ mod tests {
             };
             let (mut same, mut reached, mut total) = (0, 0, 0);
             for round in 0..40 {
-                let target = robot.state(&draw()).unwrap().tip(robot.tool()).world_from_tip;
+                let target = robot.state(&draw()).unwrap().pose_of(robot.tool());
                 let goal = Goal::frame(robot.tool(), task, target);
                 let mut problem = Problem::new(&robot, &[goal], &options).unwrap();
                 let seeds: [Vec<f64>; LANES] = std::array::from_fn(|_| draw());
@@ -432,8 +432,7 @@ mod tests {
         let mut q = robot.home().to_vec();
         q[2] = 0.3;
         q[3] -= 0.4;
-        let goal =
-            Goal::pose(robot.tool(), robot.state(&q).unwrap().tip(robot.tool()).world_from_tip);
+        let goal = Goal::pose(robot.tool(), robot.state(&q).unwrap().pose_of(robot.tool()));
         let problem = Problem::new(&robot, &[goal], &options).unwrap();
         let mut start = [0.0; MAX_COORDINATES];
         start[..7].copy_from_slice(robot.home());

@@ -229,11 +229,7 @@ mod tests {
             let budget = Budget { iterations: usize::MAX, time: None };
             let (mut closer, mut farther, mut few_farther) = (0, 0, 0);
             for _ in 0..targets {
-                let target = robot
-                    .state(&draw(&robot, &mut random))
-                    .unwrap()
-                    .tip(robot.tool())
-                    .world_from_tip;
+                let target = robot.state(&draw(&robot, &mut random)).unwrap().pose_of(robot.tool());
                 let goals = [Goal::pose(robot.tool(), target)];
                 let initial_guess = Some(draw(&robot, &mut random));
                 let options =

@@ -105,6 +105,6 @@ impl State {
 
     /// The pose of a link in the world.
     pub(crate) fn link_pose(&self, link: usize) -> Pose {
-        self.tip(self.mechanism().link_frame(link)).world_from_tip
+        self.pose_of(self.mechanism().link_frame(link))
     }
 }

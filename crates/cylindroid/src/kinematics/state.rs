@@ -1,4 +1,7 @@
 //! A mechanism at one configuration.
+//!
+//! Checked  tests/it/kinematics.rs, tests/it/relative_jacobian.rs,
+//!          tests/it/magnitudes.rs::frames_of_other_mechanisms_are_errors
 
 use super::analytical::{AnalyticalJacobian, OrientationRates, analytical};
 use super::forward::forward;
@@ -10,8 +13,9 @@ use crate::spatial::{AlignedPose, Pose, Twist, Vec3};
 
 /// A frame of a mechanism and a tool point fixed to it.
 ///
-/// Functions return an error for the frame of another mechanism ([`Mechanism::check_frame`] asks
-/// beforehand). A tool that is not finite gives numbers that are not finite.
+/// Functions that take one return an error if the frame is of another mechanism
+/// ([`Mechanism::check_frame`] tells beforehand). A tool that is not finite gives numbers that are not
+/// finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// The frame.
@@ -177,15 +181,14 @@ impl State {
         out: &mut Matrix,
     ) -> Result<()> {
         let tip = self.checked_tip(of)?;
-        Error::check_len("rows of the Jacobian", 6, out.rows())?;
-        Error::check_len("columns of the Jacobian", self.mechanism.n(), out.cols())?;
+        self.check_shape("the Jacobian", out)?;
         tip.jacobian_into(reference, out);
         Ok(())
     }
 
     /// The Jacobian of a tool relative to another frame, which may move, 6 x n: the twist of the tool
     /// as seen from `base`, its point the tool's origin, its axes those of `base`. Joints that carry
-    /// both have zeros.
+    /// both have zeros, unless a joint between them follows such a joint.
     ///
     /// ```
     /// // The hand of a panda seen from its elbow: four joints carry the elbow.
@@ -222,21 +225,22 @@ impl State {
     /// let robot = cylindroid::load("ur5e")?;
     /// let state = robot.state(robot.home())?;
     /// let mut twists = Matrix::zeros(6, 6);
-    /// state.joint_twists_into(&mut twists);
+    /// state.joint_twists_into(&mut twists)?;
     /// let jacobian = state.jacobian(robot.tool(), ReferenceFrame::World)?;
     /// assert!(twists.max_difference(&jacobian) < 1e-12);
     /// # Ok::<(), cylindroid::Error>(())
     /// ```
     ///
-    /// # Panics
-    /// If `out` is not 6 x n.
-    pub fn joint_twists_into(&self, out: &mut Matrix) {
-        assert_eq!((out.rows(), out.cols()), (6, self.mechanism.n()), "shape of the twists");
+    /// # Errors
+    /// An `out` that is not 6 x n.
+    pub fn joint_twists_into(&self, out: &mut Matrix) -> Result<()> {
+        self.check_shape("the joint twists", out)?;
         for joint in self.mechanism.joints().iter().filter(|j| j.mimic.is_none()) {
             self.for_each_twist_of(joint, |c, twist| {
                 out.column_mut(c).copy_from_slice(&twist.to_array());
             });
         }
+        Ok(())
     }
 
     /// Calls `f(coordinate, twist)` for the twist of the child of one joint relative to its parent
@@ -374,10 +378,23 @@ impl State {
         &self.slots
     }
 
+    fn check_shape(&self, what: &str, out: &Matrix) -> Result<()> {
+        if (out.rows(), out.cols()) == (6, self.mechanism.n()) {
+            return Ok(());
+        }
+        Error::check_len(&format!("rows of {what}"), 6, out.rows())?;
+        Error::check_len(&format!("columns of {what}"), self.mechanism.n(), out.cols())
+    }
+
     fn checked_tip(&self, of: impl Into<EndEffector>) -> Result<Tip<'_>> {
         let of = of.into();
         self.mechanism.check_frame(of.frame)?;
         Ok(self.tip(of))
+    }
+
+    /// [`State::pose`] of an end effector that was checked to be one of this mechanism.
+    pub(crate) fn pose_of(&self, of: impl Into<EndEffector>) -> Pose {
+        self.tip(of).world_from_tip
     }
 
     /// The tip of an end effector that was checked to be one of this mechanism.

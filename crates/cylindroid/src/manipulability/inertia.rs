@@ -44,14 +44,14 @@ pub fn body_inertia(state: &State, frame: FrameId) -> Result<Option<Matrix>> {
     let mechanism = state.mechanism();
     mechanism.check_frame(frame)?;
     let slot = mechanism.frame_of(frame).slot;
-    let origin = state.tip(frame).world_from_tip.translation;
+    let origin = state.pose_of(frame).translation;
     let mut sum = Matrix::zeros(6, 6);
     let mut total = 0.0;
     for (i, link) in mechanism.links().iter().enumerate() {
         let link_frame = mechanism.link_frame(i);
         let carried = mechanism.frame_of(link_frame).slot == slot;
         let (Some(inertial), true) = (&link.inertial, carried) else { continue };
-        let world_from_inertia = state.tip(link_frame).world_from_tip * inertial.link_from_inertia;
+        let world_from_inertia = state.pose_of(link_frame) * inertial.link_from_inertia;
         let mass = inertial.mass;
         let arm = Mat3::skew(world_from_inertia.translation - origin);
         let turn = world_from_inertia.rotation.matrix();

@@ -149,7 +149,7 @@ impl Stiffness {
             free,
             rigid,
             undetermined: motions.hyperstatic(),
-            point: state.tip(chain.reference).world_from_tip.translation,
+            point: state.pose_of(chain.reference).translation,
             state: state.clone(),
             chain,
             elastic,

@@ -31,14 +31,14 @@ impl Gaze {
 
     /// The direction of the point, and its distance; `None` if it is at the origin of the frame.
     fn direction(&self, state: &State) -> Option<(Vec3, f64)> {
-        let way = self.point - state.tip(self.end_effector).world_from_tip.translation;
+        let way = self.point - state.pose_of(self.end_effector).translation;
         let distance = way.norm();
         (distance > 0.0).then(|| (way * distance.recip(), distance))
     }
 
     /// The rotation vector from the z axis to the direction of the point, in world axes.
     pub(crate) fn error(&self, state: &State) -> Vec3 {
-        let z = state.tip(self.end_effector).world_from_tip.rotation.z_axis();
+        let z = state.pose_of(self.end_effector).rotation.z_axis();
         self.direction(state).map_or(Vec3::ZERO, |(d, _)| turn_between(z, d))
     }
 

@@ -94,7 +94,7 @@ impl HalfSpace {
 
     /// The distance inside (m, negative outside).
     pub(crate) fn room(&self, state: &State) -> f64 {
-        self.inwards().dot(state.tip(self.end_effector).world_from_tip.translation - self.point)
+        self.inwards().dot(state.pose_of(self.end_effector).translation - self.point)
     }
 
     /// The gradient of the distance over the n coordinates; `jacobian` is memory, 6 x n.

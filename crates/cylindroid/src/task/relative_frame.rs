@@ -37,8 +37,7 @@ impl RelativeFrame {
 
     /// The error at `state`, zero in components that do not count.
     pub(crate) fn error(&self, state: &State) -> Twist {
-        let seen = state.tip(self.reference).world_from_tip.inverse()
-            * state.tip(self.end_effector).world_from_tip;
+        let seen = state.pose_of(self.reference).inverse() * state.pose_of(self.end_effector);
         self.components.error(seen, self.target)
     }
 

@@ -84,4 +84,12 @@ fn wrong_limits_are_refused_where_they_stand() {
     let error = JointLimits::default().with("velocty", 1.0).unwrap_err().to_string();
     assert!(error.contains("nearest: velocity"), "{error}");
     assert!(with_limits_of_file(&arm(), Path::new("missing.toml")).is_err());
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("limits.toml");
+    std::fs::write(&path, b"[shoulder]\nvelocity = 1 # gr\xfcn\n").unwrap();
+    let error = with_limits_of_file(&arm(), &path).unwrap_err().to_string();
+    assert!(
+        error.contains("limits.toml:2:18: this is not UTF-8, which a file of limits"),
+        "{error}"
+    );
 }

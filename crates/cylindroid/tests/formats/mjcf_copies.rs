@@ -167,3 +167,16 @@ fn attached_models_that_are_wrong_are_refused() {
     std::fs::remove_file(&itself).unwrap();
     assert!(error.contains("10 inside one another"), "{error}");
 }
+
+#[test]
+fn bytes_of_attached_models_that_are_not_utf8_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = b"<mujoco>\n<!-- gr\xfcn --><worldbody><body name='tip'><geom size='1'/></body></worldbody></mujoco>";
+    std::fs::write(folder.path().join("part.xml"), part).unwrap();
+    let text = "<mujoco><asset><model name='m' file='part.xml'/></asset><worldbody>\
+                <attach model='m' body='tip' prefix='a_'/></worldbody></mujoco>";
+    std::fs::write(folder.path().join("whole.xml"), text).unwrap();
+    let report = report(&cylindroid::load_file(&folder.path().join("whole.xml")).unwrap());
+    assert!(report.contains("bytes that are not UTF-8 in"), "{report}");
+    assert!(report.contains("part.xml, line 2"), "{report}");
+}

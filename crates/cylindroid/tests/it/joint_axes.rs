@@ -16,7 +16,7 @@ fn joint_axes_are_those_of_the_joint_twists() {
     for robot in robots() {
         let state = robot.state(&random.q(&robot)).unwrap();
         let mut twists = Matrix::zeros(6, robot.n());
-        state.joint_twists_into(&mut twists);
+        state.joint_twists_into(&mut twists).unwrap();
         for (joint, axis) in robot.joints().iter().zip(state.joint_axes()) {
             let sides = [axis.on_parent, axis.on_child];
             let single = joint.mimic.is_none() && joint.coordinates.len() == 1;

@@ -43,7 +43,7 @@ fn joint_twists_are_the_columns_of_all_jacobians() {
     for robot in robots() {
         let state = robot.state(&random.q(&robot)).unwrap();
         let mut twists = Matrix::from_fn(6, robot.n(), |_, _| f64::NAN);
-        state.joint_twists_into(&mut twists);
+        state.joint_twists_into(&mut twists).unwrap();
         for joint in robot.joints().iter().filter(|j| j.mimic.is_none()) {
             let link = robot.frame(&robot.links()[joint.child].name).unwrap();
             let jacobian = state.jacobian(link, ReferenceFrame::World).unwrap();

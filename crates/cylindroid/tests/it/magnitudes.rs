@@ -79,7 +79,7 @@ fn numbers_beyond_the_range_are_refused_by_name() {
     assert!(message.contains("limit of joint 'turn' is 1.8e300"), "{message}");
 }
 
-/// Every function that takes a frame of a state or a mechanism.
+/// Poses, Jacobians, twists and measures of a frame, chains, batches and closed forms.
 #[test]
 fn frames_of_other_mechanisms_are_errors() {
     let [panda, ur5e, five_bar] =
@@ -113,6 +113,8 @@ fn frames_of_other_mechanisms_are_errors() {
         assert!(error.to_string().contains("another mechanism"), "{error}");
     }
     assert_eq!(Analytic::of(&panda, foreign).unwrap_err(), NotSolvable::Foreign);
+    let locked = Analytic::with_locked(&panda, foreign, &[6]);
+    assert_eq!(locked.unwrap_err(), NotSolvable::Foreign);
     // A matrix of another size.
     let error = state.jacobian_into(panda.tool(), local, &mut Matrix::zeros(6, 6)).unwrap_err();
     assert!(error.to_string().contains("columns of the Jacobian"), "{error}");

@@ -35,11 +35,11 @@ fn make(robot: &Robot) -> Result<Arm> {
         return Err(format!("joints in another order: {names:?}").into());
     }
     let tip = mechanism.frame("tip0")?;
-    let chain = Chain::new(&mechanism, tip);
+    let chain = Chain::new(&mechanism, tip)?;
     Ok(Arm {
         state: mechanism.state(&vec![0.0; mechanism.n()])?,
         jacobian: Matrix::zeros(6, mechanism.n()),
-        batch: KinematicsBatch::new(&mechanism, tip),
+        batch: KinematicsBatch::new(&mechanism, tip)?,
         poses: Vec::new(),
         jacobians: Vec::new(),
         mechanism,
@@ -142,7 +142,7 @@ fn check_many(robot: &Robot, arm: &mut Arm, expected: &[f64]) -> Result<()> {
 /// All poses of the tree, and the twists of all joints in world axes at the world's origin.
 fn whole_tree(arm: &mut Arm, q: &[f64]) {
     let _ = arm.state.set(q);
-    arm.state.joint_twists_into(&mut arm.jacobian);
+    let _ = arm.state.joint_twists_into(&mut arm.jacobian);
     black_box(&arm.jacobian);
 }
 
@@ -163,7 +163,7 @@ fn servo(arm: &Arm, command: &Command<'_>) -> Result<String> {
         },
     )?;
     let mut q = home.to_vec();
-    let start = arm.mechanism.state(&q)?.pose(arm.tip);
+    let start = arm.mechanism.state(&q)?.pose(arm.tip)?;
     let mut out = Vec::with_capacity(steps + q.len());
     for i in 0..steps {
         let (w, r) = (2.0 * PI / 4.0, 0.1);

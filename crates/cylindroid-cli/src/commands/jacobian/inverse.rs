@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use clap::ValueEnum as _;
 use cylindroid::inverse::{Inverse, TruncatedDirection};
 use cylindroid::linalg::Matrix;
 use cylindroid::{EndEffector, Error, ReferenceFrame, Result, State, Twist};
@@ -67,16 +68,16 @@ pub(super) fn find(
     if args.twist.is_none() && !args.inverse.is_given() {
         return Ok(None);
     }
-    let other = if args.analytical.is_some() { Some("--analytical") } else { None };
-    let other = other.or(args.relative_to.as_ref().map(|_| "--relative-to"));
-    if let Some(option) = other {
+    let angles = args.analytical.and_then(|angles| angles.to_possible_value());
+    let analytical = angles.map(|angles| ("--analytical", angles.get_name().to_owned()));
+    let relative = args.relative_to.clone().map(|frame| ("--relative-to", frame));
+    if let Some((option, value)) = analytical.or(relative) {
         return Err(Error::InvalidOption {
             option,
-            value: args.inverse.name().to_owned(),
-            reason:
-                "inverses are those of the geometric Jacobian, whose task is a twist in the world; omit \
-                     the option"
-                    .to_owned(),
+            value,
+            reason: "inverses are those of the geometric Jacobian, whose task is a twist in the \
+                     world; omit the option"
+                .to_owned(),
         });
     }
     check_pitch(&args.inverse, None, "here", (state, tool, length))?;

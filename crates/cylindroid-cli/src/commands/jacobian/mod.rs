@@ -196,7 +196,7 @@ fn print(out: &mut dyn Write, report: &JacobianJson<'_>) -> anyhow::Result<()> {
 
 fn reference_text(report: &JacobianJson<'_>) -> String {
     report.relative_to.map_or(report.reference.to_owned(), |base| {
-        format!("the frame's origin, axes of '{base}', relative to it")
+        format!("relative to '{base}', in its axes, at the frame's origin")
     })
 }
 

@@ -32,7 +32,7 @@ pub(crate) struct PlatformCoordinates {
 
 impl PlatformCoordinates {
     pub(crate) fn of(mechanism: &Mechanism, state: &State, frame: FrameId, length: f64) -> Self {
-        let origin = state.tip(frame).world_from_tip.translation;
+        let origin = state.pose_of(frame).translation;
         Self { frame, origin, length, components: mechanism.dimension().components() }
     }
 

@@ -65,7 +65,7 @@ impl ClosedChain {
         let parts = MotionSpace::of(&self.constraint).relation().motions();
         let planar = self.constraint.object() == Dimension::Planar.freedoms();
         let components = if planar { Dimension::Planar } else { Dimension::Spatial }.components();
-        let origin = state.tip(self.reference).world_from_tip.translation;
+        let origin = state.pose_of(self.reference).translation;
         let twist = |column: &[f64]| {
             let mut all = [0.0; 6];
             components.iter().zip(column).for_each(|(&i, x)| all[i] = *x);

@@ -71,7 +71,7 @@ impl Platform {
         let home = mechanism.state(mechanism.home())?;
         let mut tool = end_effector;
         if planar {
-            let turned = home.tip(end_effector).world_from_tip.rotation;
+            let turned = home.pose_of(end_effector).rotation;
             tool.frame_from_tool.rotation = tool.frame_from_tool.rotation
                 * turned.inverse()
                 * Rotation::about_z(Rpy::of(turned).yaw);
@@ -79,7 +79,7 @@ impl Platform {
         let chain = if planar { chain.in_plane() } else { chain };
         let inner = mechanism.clone();
         let platform = Self { mechanism: inner.clone(), inner, chain, tool };
-        let start = platform.coordinates_of(home.tip(tool).world_from_tip);
+        let start = platform.coordinates_of(home.pose_of(tool));
         Ok(Self { mechanism: platform.with_chain(&start)?, ..platform })
     }
 
@@ -163,7 +163,7 @@ impl Platform {
     /// As [`Mechanism::check_q`].
     pub(crate) fn extended(&self, q: &[f64]) -> Result<Vec<f64>> {
         let mut all = q.to_vec();
-        all.extend(self.coordinates_of(self.inner.state(q)?.tip(self.tool).world_from_tip));
+        all.extend(self.coordinates_of(self.inner.state(q)?.pose_of(self.tool)));
         Ok(all)
     }
 }

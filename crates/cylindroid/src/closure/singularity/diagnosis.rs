@@ -135,7 +135,7 @@ impl Diagnosis {
         };
         let redundant = unfelt(true, counts.redundancy, s.redundancy, &here.chain.actuated);
         let idle = unfelt(false, counts.idle, s.idle, &here.chain.passive);
-        let point = state.tip(here.chain.reference).world_from_tip.translation;
+        let point = state.pose_of(here.chain.reference).translation;
         let accuracy = |generic: usize| if generic == 0 { CLOSURE_BLOCK } else { GENERIC_LIMIT };
         let (of_wrenches, of_gains) = (accuracy(s.zero_torque), accuracy(s.indeterminacy));
         let wrenches = here.columns(&blocked, |d, x| x / d).map(|x| ray(wrench(&x, point)));

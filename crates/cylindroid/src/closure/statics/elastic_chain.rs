@@ -198,7 +198,7 @@ impl Columns<'_> {
             }
         };
         let components = mechanism.dimension().components();
-        let object = self.state.tip(self.chain.reference).world_from_tip.translation;
+        let object = self.state.pose_of(self.chain.reference).translation;
         let (directions, stiffness) = self.principal(body);
         for (j, k) in stiffness.iter().enumerate() {
             let mut twist = [0.0; 6];

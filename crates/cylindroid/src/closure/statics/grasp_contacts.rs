@@ -153,7 +153,7 @@ impl WrenchSpace {
     pub fn about(state: &State, object: FrameId, fingers: &[FingerContact]) -> Result<Self> {
         let mechanism = state.mechanism();
         mechanism.check_frame(object)?;
-        let point = state.tip(object).world_from_tip.translation;
+        let point = state.pose_of(object).translation;
         let farthest = fingers.iter().map(|f| (f.point - point).norm()).fold(0.0, f64::max);
         let length =
             if farthest > CLOSED * mechanism.reach() { farthest } else { mechanism.reach() };

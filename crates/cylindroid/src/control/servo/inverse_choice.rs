@@ -82,7 +82,7 @@ impl InverseChoice {
         if let Some(twist) = twist {
             Error::check_finite("twist", &twist.to_array())?;
         }
-        let pose = state.tip(tool).world_from_tip;
+        let pose = state.pose_of(tool);
         let seen = |t: Twist, from| seen_from(reference, pose, to_world(from, pose, t));
         let j = state.jacobian(tool, reference)?;
         if !mechanism.is_closed() {

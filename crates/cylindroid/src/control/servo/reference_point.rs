@@ -104,7 +104,7 @@ impl InverseChoice {
         }
         Error::check_finite("twist", &asked.to_array())?;
         Error::check_finite("point", &point.to_array())?;
-        let pose = state.tip(tool).world_from_tip;
+        let pose = state.pose_of(tool);
         let coordinates = Chain::of(mechanism, tool).coordinates().to_vec();
         let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);
         let (at_tool, at_point) = (at(pose.translation)?, at(point)?);

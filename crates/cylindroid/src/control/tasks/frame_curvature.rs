@@ -92,7 +92,7 @@ mod tests {
         let q: Vec<f64> = robot.home().iter().map(|x| x + 0.2).collect();
         for name in ["link4", robot.frame_of(robot.tool()).name.as_str()] {
             let frame = robot.frame(name).unwrap();
-            let target = robot.state(&q).unwrap().tip(frame).world_from_tip.into();
+            let target = robot.state(&q).unwrap().pose_of(frame).into();
             let objective =
                 TaskObjective::Frame { end_effector: frame.into(), components: Task::POSE, target };
             let mut own = FrameCurvature::of(&objective, &robot, &limits, &options).unwrap();

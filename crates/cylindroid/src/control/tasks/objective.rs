@@ -338,7 +338,7 @@ impl TaskObjective {
         rows.feed_forward.fill(0.0);
         match self {
             Self::Frame { end_effector, components, target } => {
-                let pose = state.tip(*end_effector).world_from_tip;
+                let pose = state.pose_of(*end_effector);
                 let seen = |twist| components.seen(pose, twist);
                 let error = seen(pose.error_to(target.pose));
                 let forward = seen(target.feed_forward);

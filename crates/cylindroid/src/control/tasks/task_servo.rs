@@ -55,21 +55,21 @@ const FOLLOWED: f64 = 0.1;
 /// ```
 /// use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions, Target};
 /// use cylindroid::ik::Task;
-/// use cylindroid::{Pose, Vec3};
+/// use cylindroid::{FrameId, Pose, Vec3};
 ///
 /// // The hand first, the elbow as far as the hand permits.
 /// let panda = cylindroid::load("panda")?;
 /// let mut q = panda.home().to_vec();
 /// let state = panda.state(&q)?;
 /// let elbow = panda.frame("link4")?;
-/// let frame = |of, components, way| TaskObjective::Frame {
-///     end_effector: of,
-///     components,
-///     target: Target::from(Pose { translation: state.pose(of)?.translation + way, ..state.pose(of)? }),
+/// let frame = |of: FrameId, components, way| {
+///     let pose = state.pose(of)?;
+///     let target = Target::from(Pose { translation: pose.translation + way, ..pose });
+///     cylindroid::Result::Ok(TaskObjective::Frame { end_effector: of.into(), components, target })
 /// };
 /// let tasks = vec![
-///     MotionTask::new("hand", frame(panda.tool().into(), Task::POSE, Vec3::X * 0.05)),
-///     MotionTask::new("elbow", frame(elbow.into(), Task::POSITION, Vec3::Y * 0.2)).at_level(1),
+///     MotionTask::new("hand", frame(panda.tool(), Task::POSE, Vec3::X * 0.05)?),
+///     MotionTask::new("elbow", frame(elbow, Task::POSITION, Vec3::Y * 0.2)?).at_level(1),
 /// ];
 /// let mut servo = TaskServo::new(&panda, tasks, TaskServoOptions::new(&panda))?;
 /// for _ in 0..3000 {

@@ -5,8 +5,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use super::span::Source;
-use super::text_file::{self, TextFile};
+use super::text_file;
 use super::{mjcf, sdf, toml, urdf, xacro, xml_limits};
 use crate::error::{Error, Result, shown};
 use crate::model::{CloseHome, Mechanism, ParameterValues, catalogue};
@@ -82,21 +81,12 @@ pub(crate) fn mechanism_text(name_or_path: &str) -> Result<(Cow<'static, str>, P
             reason: "only mechanism files (.toml) have parameters".to_owned(),
         });
     }
-    let text = utf8_of(text_file::read(&path)?, &path)?;
+    let text = text_file::read(&path)?.utf8("mechanism file", &path)?;
     Ok((text.into(), path))
 }
 
 fn is_mechanism_file(path: &Path) -> bool {
     extension(path).as_deref() == Some("toml")
-}
-
-/// The text of a mechanism file.
-fn utf8_of(file: TextFile, path: &Path) -> Result<String> {
-    let TextFile { text, replaced } = file;
-    let Some(at) = replaced else { return Ok(text) };
-    let source = Source { format: "mechanism file", path, text: &text };
-    let message = "this is not UTF-8, which a mechanism file must be";
-    Err(source.error(at..at + 1, message, "save it as UTF-8"))
 }
 
 fn read_file(
@@ -110,7 +100,8 @@ fn read_file(
         let loader = |from: &Path, name: &str, depth, values: ParameterValues<'_>| {
             load_from(from, name, values, depth, close)
         };
-        let (text, depth) = (utf8_of(file, path)?, (depth, &loader as toml::Loader<'_>));
+        let text = file.utf8("mechanism file", path)?;
+        let depth = (depth, &loader as toml::Loader<'_>);
         return Ok(toml::describe(&text, path, "mechanism file", given, depth, close)?.0);
     }
     if let Some((name, _)) = given.first() {

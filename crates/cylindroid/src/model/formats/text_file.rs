@@ -4,10 +4,11 @@
 //! Fails    those of [`read_regular_file`]; UTF-16; TOML in another encoding. XML with bytes that are
 //!          not UTF-8 is read with a note: old files have names and comments in other encodings, and
 //!          their numbers are ASCII in all of them
-//! Checked  tests/formats/limits.rs
+//! Checked  tests/formats/limits.rs, tests/formats/srdf.rs, tests/formats/joint_limits.rs
 
 use std::path::Path;
 
+use super::span::Source;
 use crate::error::{Error, Result};
 use crate::model::read_regular_file;
 
@@ -22,6 +23,14 @@ pub(super) struct TextFile {
 }
 
 impl TextFile {
+    /// The text of TOML, which is UTF-8: bytes that are not are an error at their place.
+    pub(super) fn utf8(self, format: &'static str, path: &Path) -> Result<String> {
+        let Some(at) = self.replaced else { return Ok(self.text) };
+        let source = Source { format, path, text: &self.text };
+        let message = format!("this is not UTF-8, which a {format} must be");
+        Err(source.error(at..at + 1, message, "save it as UTF-8"))
+    }
+
     /// Line, subject and reason of the note that bytes were replaced, if any were.
     pub(super) fn note(&self) -> Option<(usize, &'static str, &'static str)> {
         let line = self.text[..self.replaced?].matches('\n').count() + 1;

@@ -30,7 +30,7 @@ calls! {
     kinematics::State::jacobian_into = |s: &'static State, of: EndEffector, r: ReferenceFrame| { let mut out = Matrix::zeros(6, s.mechanism().n()); s.jacobian_into(of, r, &mut out).map(|()| out) };
     kinematics::State::joint_axes;
     kinematics::State::joint_screws;
-    kinematics::State::joint_twists_into = |s: &'static State| { let mut out = Matrix::zeros(6, s.mechanism().n()); s.joint_twists_into(&mut out); out };
+    kinematics::State::joint_twists_into = |s: &'static State| { let mut out = Matrix::zeros(6, s.mechanism().n()); s.joint_twists_into(&mut out).map(|()| out) };
     kinematics::State::loop_joint_axes;
     kinematics::State::loop_screws;
     kinematics::State::mass_matrix;

@@ -42,7 +42,13 @@ impl<'d> Mjcf<'d> {
             }
             let path = files::beside(self.reader.source.path, self.reader.path_of(node), file);
             let text = match text_file::read(&path) {
-                Ok(file) => file.text,
+                Ok(file) => {
+                    if let Some((line, what, why)) = file.note() {
+                        let what = format!("{what} in {}, line {line}", shown(&path));
+                        self.reader.note(node, what, why, "");
+                    }
+                    file.text
+                }
                 Err(Error::Io { path, message, .. }) => {
                     return refuse(format!("cannot read {}: {message}", shown(&path)));
                 }

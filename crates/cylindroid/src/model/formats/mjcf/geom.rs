@@ -131,7 +131,7 @@ impl<'d> Mjcf<'d> {
         if let Some(node) = element.source_element("size") {
             let text = node.attribute("size").unwrap_or("");
             let is_zero = |word: &str| word.parse() == Ok(0.0);
-            // The third size of a plane is the width of the grid that is drawn on it.
+            // The third size of a plane is the distance of the grid lines that are drawn on it.
             let sizes = text.split_whitespace().take(if kind == "plane" { 2 } else { usize::MAX });
             if sizes.skip(used_sizes).any(|word| !is_zero(word)) {
                 let why = match kind {

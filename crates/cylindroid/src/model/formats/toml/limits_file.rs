@@ -21,7 +21,7 @@ use crate::model::{JointLimits, Mechanism};
 /// A file that cannot be read; [`Error::File`] with line and column for broken TOML, unknown joints
 /// with the nearest names, unknown limits, and limits that [`Mechanism::with_limits`] rejects.
 pub fn with_limits_of_file(mechanism: &Mechanism, path: &Path) -> Result<Mechanism> {
-    with_limits_of_text(mechanism, &text_file::read(path)?.text, path)
+    with_limits_of_text(mechanism, &text_file::read(path)?.utf8("file of limits", path)?, path)
 }
 
 /// A mechanism with the limits of a text; `path` is for messages.
