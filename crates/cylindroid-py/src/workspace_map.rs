@@ -29,6 +29,8 @@ use crate::sweep::axes;
 ///     The working modes. Columns with a number for each cell, NaN where the mode does not reach it:
 ///     the axes, the coordinates by name, 'type_one' and 'type_two' (smallest generic over largest
 ///     singular value of the loops, the platform or the actuated joints at rest), 'limit_distance'.
+/// size_unit : str
+///     The unit of sizes of regions, such as 'm^2': of the axes with several values.
 /// loci : list of dict
 ///     Curves, for two axes: 'kind' ('type I', 'type II', 'passive' or 'limit'), 'limit' (the
 ///     coordinate or None), 'modes' (indices), 'closed', 'points' (values of the axes, (K, 2)) and 'q'
@@ -80,6 +82,71 @@ impl PyWorkspaceMap {
     fn loci<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let loci = self.map.loci.iter().map(|locus| self.locus(py, locus));
         PyList::new(py, loci.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    #[getter]
+    fn size_unit(&self) -> String {
+        self.map.size_unit()
+    }
+
+    /// What the modes reach together, or one of them: its size, and its holes.
+    ///
+    /// To the resolution of the grid: a hole is a set of cells that are not reached, connected along the
+    /// axes and across, none of them at the border of the grid.
+    ///
+    /// Parameters
+    /// ----------
+    /// mode : int, optional
+    ///     One of `modes`, from 0. Default: all together.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     'cells', 'size' (in `size_unit`), 'is_cut' (True if it ends at the border of the grid) and
+    ///     'holes', the largest first: dicts of 'cells', 'size' and 'center' (a value for each axis).
+    ///
+    /// Raises
+    /// ------
+    /// InvalidOptionError
+    ///     For a mode that there is not.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import cylindroid as cy
+    /// >>> found = cy.workspace_map(cy.load("five-bar"), {"x": (-1, 3.5, 46), "y": (-2.6, 2.6, 53)})
+    /// >>> [hole["center"].round(1).tolist() for hole in found.workspace()["holes"]]
+    /// [[2.0, 0.0]]
+    #[pyo3(signature = (mode = None))]
+    fn workspace<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] mode: Option<usize>,
+    ) -> Result<Bound<'py, PyDict>> {
+        let region = match mode.map(|mode| (mode, self.map.modes.get(mode))) {
+            None => self.map.workspace(),
+            Some((_, Some(mode))) => self.map.workspace_of(mode),
+            Some((mode, None)) => {
+                return Err(Error::InvalidOption {
+                    option: "mode",
+                    value: mode.to_string(),
+                    reason: format!("the map has {} modes, from 0 on", self.map.modes.len()),
+                }
+                .into());
+            }
+        };
+        let holes = region.holes.into_iter().map(|hole| {
+            let dict = PyDict::new(py);
+            dict.set_item("cells", hole.cells)?;
+            dict.set_item("size", hole.size)?;
+            dict.set_item("center", hole.center.into_pyarray(py))?;
+            PyResult::Ok(dict)
+        });
+        let dict = PyDict::new(py);
+        dict.set_item("cells", region.cells)?;
+        dict.set_item("size", region.size)?;
+        dict.set_item("is_cut", region.is_cut)?;
+        dict.set_item("holes", PyList::new(py, holes.collect::<PyResult<Vec<_>>>()?)?)?;
+        Ok(dict)
     }
 
     fn __repr__(&self) -> String {

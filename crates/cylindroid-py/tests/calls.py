@@ -384,6 +384,8 @@ def calls():
          {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
           "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,
           "loci": False}),
+        ("WorkspaceMap.workspace",
+         cy.workspace_map(FIVE_BAR, {"x": (0.5, 1.5, 2)}, at={"y": 1.5}).workspace, {"mode": 0}),
         ("singularity_free_zone", cy.singularity_free_zone,
          {"mechanism": PLANAR, "components": ["x", "y"], "shape": "box", "scales": [1.0, 0.5],
           "at": {"rz": 0.1}, "free": None, "frame": PLANAR.reference, "tool": np.eye(4),

@@ -36,6 +36,23 @@ def test_columns_and_loci(found):
     assert "4 modes" in repr(found)
 
 
+def test_workspaces_have_sizes_and_holes(found):
+    assert found.size_unit == "m^2"
+    whole, cell = found.workspace(), 4.04 / 14 * 3.58 / 14
+    reached = np.any([np.isfinite(mode["q1"]) for mode in found.modes], axis=0)
+    assert whole["cells"] == reached.sum() and abs(whole["size"] - reached.sum() * cell) < 1e-12
+    assert whole["is_cut"] and all(found.workspace(i)["cells"] <= whole["cells"] for i in range(4))
+    # The disc about the second pivot, of radius sqrt(2) - 1.
+    wide = cy.workspace_map(
+        cy.load("five-bar"), {"x": (-1.03, 3.51, 61), "y": (-2.61, 2.57, 61)}, loci=False
+    ).workspace()
+    (hole,) = wide["holes"]
+    assert np.hypot(*(hole["center"] - [2, 0])) < 0.03 and not wide["is_cut"]
+    assert abs(hole["size"] / (np.pi * (2**0.5 - 1) ** 2) - 1) < 0.05
+    with pytest.raises(cy.InvalidOptionError, match="mode = 4 .*the map has 4 modes, from 0 on"):
+        found.workspace(4)
+
+
 def test_components_are_held_or_free():
     stewart = cy.load("stewart")
     over = {"x": (-0.1, 0.1, 3), "y": (-0.1, 0.1, 3)}

@@ -44,6 +44,27 @@ fn a_five_bar() {
     assert!(text(&OVER).contains("working modes"));
 }
 
+/// What all modes reach together, and the disc about the second pivot, which none reaches.
+#[test]
+fn the_workspace_and_its_hole() {
+    let over = ["map", "five-bar", "--over", "x=-1.03:3.51:61", "--over", "y=-2.61:2.57:61"];
+    let report = json(&[&over[..], &["--no-loci"]].concat(), 0);
+    assert_eq!(
+        (&report["size_unit"], &report["workspace"]["is_cut"]),
+        (&"m^2".into(), &false.into())
+    );
+    let [hole] = &report["workspace"]["holes"].as_array().unwrap()[..] else { panic!("{report}") };
+    let center = numbers(&hole["center"]);
+    assert!((center[0] - 2.0).hypot(center[1]) < 0.03, "{center:?}");
+    let disc = std::f64::consts::PI * (2.0_f64.sqrt() - 1.0).powi(2);
+    assert!((hole["size"].as_f64().unwrap() / disc - 1.0).abs() < 0.05, "{hole}");
+    let of_mode = &report["modes"][0];
+    assert!(of_mode["size"].as_f64() <= report["workspace"]["size"].as_f64());
+    let shown = text(&[&over[..], &["--no-loci"]].concat());
+    assert!(shown.contains("\nany ") && shown.contains("A hole of 0.5"), "{shown}");
+    assert!(text(&OVER).contains("ends at the border of the grid"));
+}
+
 /// Other drives: the one on the ground closes the loop, and has type II nevertheless.
 #[test]
 fn other_drives() {

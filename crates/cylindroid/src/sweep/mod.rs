@@ -60,8 +60,8 @@ pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
 pub use manifest::Part;
 pub use map::{
-    Locus, LocusKind, Map, MapOptions, WorkingMode, Zone, ZoneBound, ZoneComponent, ZoneOptions,
-    ZoneShape,
+    Hole, Locus, LocusKind, Map, MapOptions, Region, WorkingMode, Zone, ZoneBound, ZoneComponent,
+    ZoneOptions, ZoneShape,
 };
 pub use optimise::{
     DesignObjective, OptimalDesign, Optimisation, OptimisationOptions, Optimum, Refinement, Sense,

@@ -11,6 +11,7 @@ mod five_bar;
 mod inverse;
 mod options;
 mod planar_platform;
+mod region;
 mod robots;
 #[allow(dead_code)] // of the helpers, a few are needed here
 #[path = "../it/support.rs"]

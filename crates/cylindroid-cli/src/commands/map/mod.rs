@@ -7,7 +7,7 @@ use std::io::Write;
 
 use cylindroid::sweep::{LocusKind, Map, MapOptions};
 
-use self::report::{MapJson, report};
+use self::report::{MapJson, RegionJson, report};
 use crate::args::MapArgs;
 use crate::commands::shared::{Style, load, reference_or_tool};
 use crate::exit::Exit;
@@ -92,23 +92,52 @@ fn print(out: &mut dyn Write, report: &MapJson<'_>) -> anyhow::Result<()> {
         return Ok(());
     }
     writeln!(out)?;
+    let size = format!("size [{}]", report.size_unit);
     let columns = [
         ("mode", Align::Left),
         ("cells", Align::Right),
         ("of all [%]", Align::Right),
+        (&size, Align::Right),
+        ("holes", Align::Right),
         ("least type I [-]", Align::Right),
         ("least type II [-]", Align::Right),
     ];
-    let rows = report.modes.iter().enumerate().map(|(i, mode)| {
-        vec![
-            (i + 1).to_string(),
-            mode.cells.to_string(),
-            number(100.0 * mode.cells as f64 / report.cells as f64),
-            number(mode.least_type_one),
-            number(mode.least_type_two),
-        ]
-    });
+    let of_region = |name: String, region: &RegionJson, least: [String; 2]| {
+        let share = 100.0 * region.cells as f64 / report.cells as f64;
+        let cells = [region.cells.to_string(), number(share), number(region.size)];
+        let holes = region.holes.len().to_string();
+        [name].into_iter().chain(cells).chain([holes]).chain(least).collect::<Vec<_>>()
+    };
+    let mut rows: Vec<_> = report
+        .modes
+        .iter()
+        .enumerate()
+        .map(|(i, mode)| {
+            let least = [mode.least_type_one, mode.least_type_two].map(number);
+            of_region((i + 1).to_string(), &mode.region, least)
+        })
+        .collect();
+    if report.modes.len() > 1 {
+        rows.push(of_region("any".to_owned(), &report.workspace, Default::default()));
+    }
     output::table(out, &columns, rows)?;
+    if report.workspace.is_cut {
+        writeln!(
+            out,
+            "\nThe workspace ends at the border of the grid, beyond which it may go on."
+        )?;
+    }
+    for hole in &report.workspace.holes {
+        let center: Vec<String> = hole.center.iter().map(|x| number(*x)).collect();
+        writeln!(
+            out,
+            "\nA hole of {} {} about ({}), {} cells.",
+            number(hole.size),
+            report.size_unit,
+            center.join(", "),
+            hole.cells
+        )?;
+    }
     if report.loci.is_empty() {
         return Ok(());
     }

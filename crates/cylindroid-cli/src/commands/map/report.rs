@@ -1,7 +1,7 @@
 //! The report of a map, as data.
 
 use cylindroid::Mechanism;
-use cylindroid::sweep::{Locus, Map};
+use cylindroid::sweep::{Hole, Locus, Map, Region};
 use serde::Serialize;
 
 use crate::output;
@@ -20,6 +20,10 @@ pub(super) struct MapJson<'a> {
     /// Whether the distances of type I and II have a sign.
     pub(super) signed: [bool; 2],
     pub(super) cells: usize,
+    /// Of the sizes of workspace and holes.
+    pub(super) size_unit: String,
+    /// What the modes reach together.
+    pub(super) workspace: RegionJson,
     pub(super) modes: Vec<ModeJson>,
     pub(super) joint_names: Vec<&'a str>,
     pub(super) loci: Vec<LocusJson<'a>>,
@@ -41,9 +45,35 @@ pub(super) struct HeldJson<'a> {
 }
 
 #[derive(Debug, Serialize)]
-pub(super) struct ModeJson {
-    /// Cells that it reaches.
+pub(super) struct RegionJson {
     pub(super) cells: usize,
+    pub(super) size: f64,
+    /// True if it ends at the border of the grid.
+    pub(super) is_cut: bool,
+    pub(super) holes: Vec<HoleJson>,
+}
+
+impl From<Region> for RegionJson {
+    fn from(region: Region) -> Self {
+        let hole = |h: Hole| HoleJson { cells: h.cells, size: h.size, center: h.center };
+        let holes = region.holes.into_iter().map(hole).collect();
+        Self { cells: region.cells, size: region.size, is_cut: region.is_cut, holes }
+    }
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct HoleJson {
+    pub(super) cells: usize,
+    pub(super) size: f64,
+    /// The mean of its cells, a value for each axis [m or rad].
+    pub(super) center: Vec<f64>,
+}
+
+#[derive(Debug, Serialize)]
+pub(super) struct ModeJson {
+    /// What it reaches.
+    #[serde(flatten)]
+    pub(super) region: RegionJson,
     /// Smallest distance to singularities of type I and II in them [-].
     pub(super) least_type_one: f64,
     pub(super) least_type_two: f64,
@@ -77,7 +107,7 @@ pub(super) fn report<'a>(
             .filter(|&cell| mode.reached[cell])
             .max_by(|a, b| mode.type_two[*a].abs().total_cmp(&mode.type_two[*b].abs()));
         ModeJson {
-            cells: mode.cells(),
+            region: map.workspace_of(mode).into(),
             least_type_one: least(&mode.type_one),
             least_type_two: least(&mode.type_two),
             q: best.map_or_else(Vec::new, |cell| mode.q[cell * n..(cell + 1) * n].to_vec()),
@@ -110,6 +140,8 @@ pub(super) fn report<'a>(
         free_motions: map.free_motions,
         signed: map.signed,
         cells: map.cells(),
+        size_unit: map.size_unit(),
+        workspace: map.workspace().into(),
         modes: modes.collect(),
         joint_names: output::joint_names(robot),
         loci: map.loci.iter().map(locus).collect(),

@@ -53,6 +53,29 @@ impl Grid {
         all
     }
 
+    /// The neighbours of a cell along the axes and across.
+    pub(super) fn all_neighbours(&self, cell: usize) -> Vec<usize> {
+        let mut all = vec![0];
+        for (place, count) in self.places(cell).into_iter().zip(&self.counts) {
+            let near = place.saturating_sub(1)..=(place + 1).min(count - 1);
+            all = all.iter().flat_map(|a| near.clone().map(move |b| a * count + b)).collect();
+        }
+        all.retain(|&other| other != cell);
+        all
+    }
+
+    /// True for a cell at an end of an axis with several values.
+    pub(super) fn is_border(&self, cell: usize) -> bool {
+        let places = self.places(cell);
+        places.iter().zip(&self.counts).any(|(p, count)| *count > 1 && (*p == 0 || p + 1 == *count))
+    }
+
+    /// The size of a cell [m and rad, multiplied], of the axes with several values.
+    pub(super) fn measure(&self) -> f64 {
+        let several = self.axes.iter().filter(|axis| axis.count > 1);
+        several.map(|axis| (axis.to - axis.from) / (axis.count - 1) as f64).product()
+    }
+
     /// The cell nearest to some values of the axes.
     pub(super) fn nearest(&self, values: &[f64]) -> usize {
         let mut cell = 0;
@@ -105,6 +128,10 @@ mod tests {
             assert_eq!(grid.nearest(&grid.values(cell)), cell);
             assert!(grid.spread(cell) < grid.cells());
         }
+        assert_eq!(grid.all_neighbours(4), [0, 1, 2, 3, 5, 6, 7, 8]);
+        assert_eq!(grid.all_neighbours(11), [7, 8, 10]);
+        assert_eq!((0..12).filter(|&cell| !grid.is_border(cell)).collect::<Vec<_>>(), [4, 7]);
+        assert_eq!(grid.measure(), 0.5);
         assert_eq!(grid.nearest(&[-9.0, f64::NAN]), 0);
         assert_eq!(Grid::new(&[axis("x", 1.0, 1.0, 1)]).nearest(&[3.0]), 0);
     }

@@ -2,7 +2,8 @@
 //! the loci of its singularities.
 //!
 //! Read in this order: `options`, `problem` (what is prescribed, what is singular), `grid`, `flood`
-//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves). `zone` is the largest
+//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves), `region` (sizes and
+//! holes). `zone` is the largest
 //! ball or box around a configuration without singularities, found by `zone_search` with `zone_rays`.
 //!
 //! ```
@@ -26,12 +27,14 @@ mod loci;
 mod modes;
 mod options;
 mod problem;
+mod region;
 mod result;
 mod zone;
 mod zone_rays;
 mod zone_search;
 
 pub use options::MapOptions;
+pub use region::{Hole, Region};
 pub use result::{Locus, LocusKind, WorkingMode};
 pub use zone::{Zone, ZoneBound, ZoneComponent, ZoneOptions, ZoneShape};
 
@@ -100,6 +103,34 @@ impl Map {
     #[must_use]
     pub const fn cells(&self) -> usize {
         self.grid_cells
+    }
+
+    /// What the modes reach together: its size, and its holes.
+    #[must_use]
+    pub fn workspace(&self) -> Region {
+        region::region(&Grid::new(&self.axes), &self.modes.iter().collect::<Vec<_>>())
+    }
+
+    /// What one of its modes reaches.
+    #[must_use]
+    pub fn workspace_of(&self, mode: &WorkingMode) -> Region {
+        region::region(&Grid::new(&self.axes), &[mode])
+    }
+
+    /// The unit of the size of a region, such as "m^2" or "m rad": of the axes with several values.
+    #[must_use]
+    pub fn size_unit(&self) -> String {
+        let several: Vec<&Axis> = self.axes.iter().filter(|axis| axis.count > 1).collect();
+        let power = |unit: &str| {
+            let of_it = several.iter().filter(|axis| Self::unit(&axis.name) == unit).count();
+            match of_it {
+                0 => None,
+                1 => Some(unit.to_owned()),
+                power => Some(format!("{unit}^{power}")),
+            }
+        };
+        let units: Vec<String> = ["m", "rad"].into_iter().filter_map(power).collect();
+        if units.is_empty() { "1".to_owned() } else { units.join(" ") }
     }
 
     /// The unit of a component: "m" of x, y and z, otherwise "rad".

@@ -11,8 +11,11 @@ calls! {
     sweep::LocusKind::name;
     sweep::Map::cells;
     sweep::Map::of;
+    sweep::Map::size_unit;
     sweep::Map::unit;
     sweep::Map::values;
+    sweep::Map::workspace;
+    sweep::Map::workspace_of;
     sweep::Optimisation::configurations;
     sweep::Optimisation::end_effector;
     sweep::Optimisation::evaluate;
