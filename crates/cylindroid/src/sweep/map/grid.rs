@@ -76,6 +76,20 @@ impl Grid {
         several.map(|axis| (axis.to - axis.from) / (axis.count - 1) as f64).product()
     }
 
+    /// The mean of some cells, a value for each axis.
+    pub(super) fn mean(&self, cells: &[usize]) -> Vec<f64> {
+        let mut sums = vec![0; self.counts.len()];
+        for cell in cells {
+            sums.iter_mut().zip(self.places(*cell)).for_each(|(sum, place)| *sum += place);
+        }
+        let mean = |(axis, sum): (&Axis, usize)| {
+            let last = axis.count.saturating_sub(1).max(1) as f64;
+            let share = sum as f64 / (cells.len() as f64 * last);
+            axis.from * (1.0 - share) + axis.to * share
+        };
+        self.axes.iter().zip(sums).map(mean).collect()
+    }
+
     /// The cell nearest to some values of the axes.
     pub(super) fn nearest(&self, values: &[f64]) -> usize {
         let mut cell = 0;
@@ -132,6 +146,7 @@ mod tests {
         assert_eq!(grid.all_neighbours(11), [7, 8, 10]);
         assert_eq!((0..12).filter(|&cell| !grid.is_border(cell)).collect::<Vec<_>>(), [4, 7]);
         assert_eq!(grid.measure(), 0.5);
+        assert_eq!(grid.mean(&[0, 2, 9, 11]), [0.5, 0.5]);
         assert_eq!(grid.nearest(&[-9.0, f64::NAN]), 0);
         assert_eq!(Grid::new(&[axis("x", 1.0, 1.0, 1)]).nearest(&[3.0]), 0);
     }

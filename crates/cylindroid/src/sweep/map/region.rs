@@ -62,13 +62,8 @@ pub(super) fn region(grid: &Grid, modes: &[&WorkingMode]) -> Region {
             }
         }
         if is_hole && cells > 0 {
-            let count = found.len();
-            let mut center = vec![0.0; grid.values(first).len()];
-            for cell in &found {
-                let values = grid.values(*cell);
-                center.iter_mut().zip(values).for_each(|(sum, x)| *sum += x / count as f64);
-            }
-            holes.push(Hole { cells: count, size: size * count as f64, center });
+            let (cells, center) = (found.len(), grid.mean(&found));
+            holes.push(Hole { cells, size: size * cells as f64, center });
         }
     }
     holes.sort_by_key(|hole| std::cmp::Reverse(hole.cells));
