@@ -46,6 +46,7 @@ OTHER_WORDS = {
     "radius": "a length",
     "moment": "admittance",
     "q": "start of the joint move",
+    "to": "end of the joint move",
     "name": "obstacle",
     "via": "point",
 }

@@ -116,13 +116,13 @@ def test_toolbox_names():
                        ([1, 0, 1, 0, 0, 0], [0, 2])]:
         s = np.linalg.svd(J[rows], compute_uv=False)
         assert abs(robot.manipulability(q, axes=axes) - s.prod()) < 1e-9
-        assert abs(robot.manipulability(q, "invcondition", axes) - s[-1] / s[0]) < 1e-9
+        assert abs(robot.manipulability(q, method="invcondition", axes=axes) - s[-1] / s[0]) < 1e-9
     many = robot.manipulability(np.array([q, q + 0.1]))
     assert many.shape == (2,) and abs(many[0] - robot.manipulability(q)) < 1e-12
     singular = Robot("ur5e")
     assert singular.manipulability([0.0, -0.6, 0.0, 0.4, 1.0, 0.0]) == 0.0
     assert Robot("3r").manipulability([0.1, 0.4, 0.5]) > 0
-    for bad in ({"axes": "none"}, {"axes": [1, 2]}, {"method": "asada"}):
+    for bad in ({"axes": "none"}, {"axes": [1, 2]}, {"method": "other"}):
         with pytest.raises(ValueError):
             robot.manipulability(q, **bad)
 
