@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -194,7 +195,9 @@ class Robot:
         pose = self.mechanism.fk(q, end or self._end, tool)
         if start is None and not include_base:
             start = self._base
-        return pose if start is None else np.linalg.solve(self.mechanism.fk(q, start), pose)
+        if start is None:
+            return pose
+        return np.asarray(np.linalg.solve(self.mechanism.fk(q, start), pose), dtype=np.float64)
 
     def fkine_all(self, q: ArrayLike) -> NDArray[np.float64]:
         """The poses of all frames, in the order of `Mechanism.frames`: `Mechanism.fk_all`."""
@@ -250,8 +253,9 @@ class Robot:
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """The Hessian in world axes, (n, 6, n) or (N, n, 6, n); `J0` must be that of q."""
-        check_given("J0", J0, None if q is None else lambda: self.jacob0(q, end, None, tool))
+        check_given("J0", J0, None if q is None else partial(self.jacob0, q, end, None, tool))
         self._from_base(start, "the Hessian")
+        q = self.qr if q is None else q
         return self.mechanism.hessian(q, end or self._end, "local_world_aligned", tool)
 
     def hessiane(
@@ -263,9 +267,10 @@ class Robot:
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n); as `hessian0`."""
-        check_given("Je", Je, None if q is None else lambda: self.jacobe(q, end, None, tool))
-        found = self.hessian0(q, end, start, None, tool)
-        return in_axes_of(self.fkine(q, end, tool=tool)[..., None, :, :], found)
+        check_given("Je", Je, None if q is None else partial(self.jacobe, q, end, None, tool))
+        q = self.qr if q is None else q
+        pose = self.fkine(q, end, tool=tool)[..., None, :, :]
+        return in_axes_of(pose, self.hessian0(q, end, start, None, tool))
 
     def jacob0_dot(
         self,
@@ -278,11 +283,8 @@ class Robot:
     ) -> NDArray[np.float64]:
         """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`; `J0` must be that of q."""
         if representation is not None:
-            raise NotHere(
-                "the derivative of an analytical Jacobian is not in cylindroid.rtb; without "
-                "representation it is that of the geometric one"
-            )
-        check_given("J0", J0, None if q is None else lambda: self.jacob0(q, end))
+            raise NotHere("rates of analytical Jacobians are not here; call it without representation")
+        check_given("J0", J0, None if q is None else partial(self.jacob0, q, end))
         return self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
 
     def jacob0_analytical(
@@ -328,8 +330,8 @@ class Robot:
         axes: str | ArrayLike = "all",
     ) -> NDArray[np.float64]:
         """The gradient of Yoshikawa's manipulability at q or `qr`, (n, 1); NaN where there is none."""
-        check_given("J", J, None if q is None else lambda: self.jacob0(q, end))
-        check_given("H", H, None if q is None else lambda: self.hessian0(q, end))
+        check_given("J", J, None if q is None else partial(self.jacob0, q, end))
+        check_given("H", H, None if q is None else partial(self.hessian0, q, end))
         self._from_base(start, "the gradient")
         found = self.mechanism.manipulability_gradient(
             self.qr if q is None else q,
@@ -376,12 +378,11 @@ class Robot:
             raise NotHere("method = 'asada' is not in cylindroid.rtb; use Mechanism.manipulability")
         if method not in ("yoshikawa", "minsingular", "invcondition"):
             raise ValueError(f"method = {method!r}: 'yoshikawa', 'minsingular' or 'invcondition'")
-        check_given("J", J, None if q is None else lambda: self.jacob0(q, end))
+        check_given("J", J, None if q is None else partial(self.jacob0, q, end))
         self._from_base(start, "manipulability")
         q = self.mechanism.ordered(self.qr if q is None else q)
         found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
-        possible = min(len(task.split(",")), self.n)
-        values = [measure(report.kinematic, method, possible) for report in found]
+        values = [measure(r.kinematic, method, min(task.count(",") + 1, self.n)) for r in found]
         return values[0] if np.ndim(q) == 1 else np.array(values)
 
     def ikine_LM(
