@@ -105,9 +105,7 @@ impl Member {
             row: vec![0.0; n],
         }
     }
-}
 
-impl Member {
     /// Stores the part of the scaled error of which `velocities` are what is left.
     pub(super) fn load_left(&mut self, gain: f64, velocities: &[f64]) {
         let gain = if gain > 0.0 { gain } else { USUAL_GAIN };

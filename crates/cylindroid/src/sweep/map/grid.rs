@@ -71,7 +71,7 @@ impl Grid {
     }
 
     /// The size of a cell [m and rad, multiplied], of the axes with several values.
-    pub(super) fn measure(&self) -> f64 {
+    pub(super) fn cell_size(&self) -> f64 {
         let several = self.axes.iter().filter(|axis| axis.count > 1);
         several.map(|axis| (axis.to - axis.from) / (axis.count - 1) as f64).product()
     }
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(grid.all_neighbours(4), [0, 1, 2, 3, 5, 6, 7, 8]);
         assert_eq!(grid.all_neighbours(11), [7, 8, 10]);
         assert_eq!((0..12).filter(|&cell| !grid.is_border(cell)).collect::<Vec<_>>(), [4, 7]);
-        assert_eq!(grid.measure(), 0.5);
+        assert_eq!(grid.cell_size(), 0.5);
         assert_eq!(grid.mean(&[0, 2, 9, 11]), [0.5, 0.5]);
         assert_eq!(grid.nearest(&[-9.0, f64::NAN]), 0);
         assert_eq!(Grid::new(&[axis("x", 1.0, 1.0, 1)]).nearest(&[3.0]), 0);

@@ -4,8 +4,8 @@
 //!          a hole is a set of cells that are not reached, connected along the axes and across, none
 //!          of them at the border of the grid
 //! Units    m and rad, multiplied
-//! Valid    to the resolution of the grid: holes smaller than a cell are missed, and what a gap narrower
-//!          than a cell connects with the outside is a hole
+//! Valid    to the resolution of the grid: a hole smaller than a cell is missed, and a bay whose mouth is
+//!          narrower than a cell counts as a hole
 //! Checked  tests in this file, tests/map/region.rs
 
 use super::grid::Grid;
@@ -41,7 +41,7 @@ pub(super) fn region(grid: &Grid, modes: &[&WorkingMode]) -> Region {
     for mode in modes {
         reached.iter_mut().zip(&mode.reached).for_each(|(any, own)| *any |= own);
     }
-    let size = grid.measure();
+    let size = grid.cell_size();
     let cells = reached.iter().filter(|r| **r).count();
     let is_cut = (0..reached.len()).any(|cell| reached[cell] && grid.is_border(cell));
     let mut holes = Vec::new();
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn holes_are_enclosed_along_and_across() {
-        // A ring of 31 x 31 cells with one cell missing at a corner: no hole.
+        // A square ring around 9 x 9 cells; without its corners what it encloses goes on across them.
         let edge = |x: f64| (x.abs() - 0.5).abs() < 1e-9;
         let inside = |x: f64| x.abs() < 0.5 + 1e-9;
         let ring = |x: &[f64]| (edge(x[0]) && inside(x[1])) || (edge(x[1]) && inside(x[0]));
@@ -128,6 +128,15 @@ mod tests {
         assert!(large.cells > small.cells && !two.is_cut);
         assert!(norm(&[large.center[0] - 0.5, large.center[2]]) < 1e-9, "{large:?}");
         assert!(norm(&[small.center[0] + 0.6, small.center[2]]) < 1e-9, "{small:?}");
+        // In another order of the axes the same.
+        let turned = of(&[31, 31], |x| {
+            let far = |at: f64| norm(&[x[0], x[1] - at]);
+            far(0.0) < 1.25 && far(0.5) > 0.35 && far(-0.6) > 0.15
+        });
+        assert_eq!((turned.cells, turned.size), (two.cells, two.size));
+        for (a, b) in turned.holes.iter().zip(&two.holes) {
+            assert_eq!((a.cells, a.center[1]), (b.cells, b.center[0]));
+        }
         assert!(of(&[31, 31], |_| true).is_cut);
         let nothing = of(&[31, 31], |_| false);
         assert_eq!((nothing.cells, nothing.holes.len(), nothing.is_cut), (0, 0, false));
