@@ -155,6 +155,15 @@ fn encodings_are_told() {
     assert_eq!((note.line, note.what.as_str()), (2, "bytes that are not UTF-8"));
     let message = told(|| load_file(&written(&folder, "a.toml", b"name = \"\xe4\"")));
     assert!(message.ends_with("a.toml:1:9: this is not UTF-8, which a mechanism file must be"));
+    // In an included file.
+    let part = b"<mujocoinclude>\n<!-- \xe4 --></mujocoinclude>".to_vec();
+    written(&folder, "part.xml", part);
+    let whole = b"<mujoco><include file='part.xml'/><worldbody/></mujoco>".to_vec();
+    let m = load_file(&written(&folder, "whole.xml", whole)).unwrap();
+    let note = &m.report().ignored[0];
+    assert_eq!(note.line, 2);
+    assert!(note.what.starts_with("bytes that are not UTF-8"), "{}", note.what);
+    assert!(note.what.contains("part.xml"), "{}", note.what);
     let utf16: Vec<u8> = "\u{feff}<robot/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert!(told(|| load_file(&written(&folder, "a.urdf", utf16))).contains("UTF-16"));
 }

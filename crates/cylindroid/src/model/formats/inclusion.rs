@@ -28,6 +28,8 @@ const LARGEST_INCLUSION: usize = 64 << 20;
 pub(super) struct Included {
     pub(super) path: PathBuf,
     text: String,
+    /// Byte offset of the first character that replaces bytes that are not UTF-8.
+    replaced: Option<usize>,
     /// The file (0 is the main one) and the byte offset of its `<include>`.
     place: (usize, usize),
 }
@@ -65,8 +67,10 @@ pub(super) fn gather(
                 let message = format!("the model includes more than {MOST_FILES} files");
                 return refuse(message, "does a file include itself?");
             }
-            let text = match text_file::read(&path) {
-                Ok(TextFile { text, .. }) => xml_limits::without_undeclared(&text).into_owned(),
+            let (text, replaced) = match text_file::read(&path) {
+                Ok(TextFile { text, replaced }) => {
+                    (xml_limits::without_undeclared(&text).into_owned(), replaced)
+                }
                 Err(Error::Io { path, message, .. }) => {
                     return refuse(format!("cannot read {}: {message}", shown(&path)), "");
                 }
@@ -77,7 +81,7 @@ pub(super) fn gather(
                 let limit = LARGEST_INCLUSION >> 20;
                 return refuse(format!("the included files exceed {limit} MiB together"), "");
             }
-            found.push(Included { path, text, place: (file, node.range().start) });
+            found.push(Included { path, text, replaced, place: (file, node.range().start) });
         }
         if let (Some((_, text)), Some(i)) = (own, file.checked_sub(1)) {
             found[i].text = text;
@@ -92,6 +96,8 @@ pub(super) struct ByInclude<'d> {
     documents: &'d [Document<'d>],
     /// Indices of `documents` by the texts and offsets of their `<include>` elements.
     index: BTreeMap<(usize, usize), usize>,
+    /// Files (0 is the main one) and offsets of bytes that are not UTF-8.
+    replaced: Vec<(usize, usize)>,
 }
 
 impl<'d> ByInclude<'d> {
@@ -103,7 +109,19 @@ impl<'d> ByInclude<'d> {
     ) -> Self {
         let text = |file: usize| text_of(file.checked_sub(1).map_or(main, |i| &documents[i]));
         let place = |f: &Included| (text(f.place.0), f.place.1);
-        Self { documents, index: included.iter().map(place).zip(0..).collect() }
+        let replaced = |(i, f): (usize, &Included)| f.replaced.map(|at| (i + 1, at));
+        Self {
+            documents,
+            index: included.iter().map(place).zip(0..).collect(),
+            replaced: included.iter().enumerate().filter_map(replaced).collect(),
+        }
+    }
+
+    /// Logs the bytes of the included files that are not UTF-8.
+    pub(super) fn note_replaced(&self, reader: &mut Reader<'_>) {
+        for (file, at) in &self.replaced {
+            reader.notes.add_in(*file, *at, text_file::NOT_UTF8.0, text_file::NOT_UTF8.1, "");
+        }
     }
 
     /// The root element of the file that an `<include>` brings.

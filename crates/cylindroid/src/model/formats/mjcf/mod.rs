@@ -142,6 +142,7 @@ fn read<'d>(
 ) -> Result<Mjcf<'d>> {
     let mut reader = Reader::new(source, None);
     reader.included = included;
+    files.included.note_replaced(&mut reader);
     (reader.owners, reader.why) = (&["body", "key", "default"], why_unused);
     let root = files.main.root_element();
     reader.unread_attributes(root, &["model"]);

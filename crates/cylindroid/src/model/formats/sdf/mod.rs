@@ -97,6 +97,7 @@ fn read<'d>(
 ) -> Result<Mechanism> {
     let mut reader = Reader::new(source, None);
     reader.included = included;
+    includes.note_replaced(&mut reader);
     (reader.owners, reader.why) = (&["link", "joint", "frame", "model"], why_unused);
     for root in std::iter::once(root).chain(includes.roots()) {
         reader.unread_attributes(root, &["version"]);
