@@ -71,30 +71,34 @@ export class Plots {
     const shown = [...this.charts.values()].flatMap((chart) => (chart.canvas ? [{ chart, canvas: chart.canvas }] : []));
     if (shown.length === 0) return Promise.reject(new Error("no plot is shown"));
     const scale = devicePixelRatio;
-    const [title, legend] = [22 * scale, 20 * scale];
+    const [title, line] = [22 * scale, 20 * scale];
     const canvas = document.createElement("canvas");
-    canvas.width = Math.max(...shown.map((one) => one.canvas.width));
-    canvas.height = shown.reduce((sum, one) => sum + one.canvas.height + title + legend, 0);
     const context = canvas.getContext("2d");
     if (!context) return Promise.reject(new Error("this browser does not support 2D canvases"));
+    const width = Math.max(...shown.map((one) => one.canvas.width));
+    const font = `${11 * scale}px system-ui, sans-serif`;
+    context.font = font;
+    const legends = shown.map(({ chart }) => legendOf(context, chart.entries, width, scale));
+    canvas.width = width;
+    canvas.height = shown.reduce((sum, one, i) => sum + one.canvas.height + title + line * (legends[i]?.at(-1)?.row ?? 0) + line, 0);
     context.fillStyle = colour("panel");
     context.fillRect(0, 0, canvas.width, canvas.height);
     let y = 0;
-    for (const { chart, canvas: drawn } of shown) {
+    for (const [i, { chart, canvas: drawn }] of shown.entries()) {
+      const legend = legends[i] ?? [];
       context.font = `600 ${13 * scale}px system-ui, sans-serif`;
       context.fillStyle = colour("ink");
       context.fillText(chart.element.querySelector("figcaption")?.textContent ?? "", 8 * scale, y + 15 * scale);
       context.drawImage(drawn, 0, y + title);
-      context.font = `${11 * scale}px system-ui, sans-serif`;
-      let x = 52 * scale;
-      for (const { label, colour: ink } of chart.entries) {
+      y += title + drawn.height;
+      context.font = font;
+      for (const { label, ink, x, row } of legend) {
         context.fillStyle = ink;
-        context.fillRect(x, y + title + drawn.height + 5 * scale, 12 * scale, 3 * scale);
+        context.fillRect(x, y + row * line + 5 * scale, 12 * scale, 3 * scale);
         context.fillStyle = colour("ink");
-        context.fillText(label, x + 16 * scale, y + title + drawn.height + 11 * scale);
-        x += context.measureText(label).width + 30 * scale;
+        context.fillText(label, x + 16 * scale, y + row * line + 11 * scale);
       }
-      y += drawn.height + title + legend;
+      y += line * (legend.at(-1)?.row ?? 0) + line;
     }
     return new Promise((resolve, reject) => canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be encoded"))), "image/png"));
   }
@@ -120,4 +124,17 @@ export class Plots {
     for (const chart of this.charts.values()) chart.show(this.recording);
     this.at(this.moment.index, this.moment.time);
   }
+}
+
+/** Where the names of lines are in a picture: in rows that end within its width. */
+function legendOf(context: CanvasRenderingContext2D, entries: { label: string; colour: string }[], width: number, scale: number): { label: string; ink: string; x: number; row: number }[] {
+  const [left, gap] = [52 * scale, 14 * scale];
+  let [x, row] = [left, 0];
+  return entries.map(({ label, colour: ink }) => {
+    const wide = 16 * scale + context.measureText(label).width;
+    if (x > left && x + wide > width) [x, row] = [left, row + 1];
+    const place = { label, ink, x, row };
+    x += wide + gap;
+    return place;
+  });
 }
