@@ -288,6 +288,43 @@ def test_poses_without_the_base():
     np.testing.assert_array_equal(panda.fkine(panda.qr, include_base=False), panda.fkine(panda.qr))
 
 
+def test_joints_from_pose_to_pose():
+    robot = Robot("panda")
+    lower, upper = robot.qlim
+    ends = [robot.fkine(lower + share * (upper - lower)) for share in (0.4, 0.6)]
+    times = np.array([0.0, 0.5, 1.2, 2.0, 3.0])
+    found = robot.jtraj(*ends, times, seed=3)
+    assert (len(found), found.naxes) == (5, 7)
+    np.testing.assert_array_equal(found.t, times)
+    for end, q in zip(ends, found.q[[0, -1]]):
+        np.testing.assert_allclose(robot.fkine(q), end, atol=2e-3)
+    # The second configuration is that which the search finds from the first.
+    second = robot.ikine_LM(ends[1], q0=found.q[0], seed=3).q
+    np.testing.assert_allclose(found.q[-1], second, atol=1e-15)
+    # The six conditions of a polynomial of fifth order, and its values by them alone.
+    T = times[-1]
+    powers = [[np.prod(range(k - d + 1, k + 1)) * (t ** max(k - d, 0)) * (k >= d) for k in range(6)]
+              for t in (0.0, T) for d in range(3)]
+    way = found.q[-1] - found.q[0]
+    zero = np.zeros_like(way)
+    c = np.linalg.solve(powers, [found.q[0], zero, zero, found.q[-1], zero, zero])
+    for t, q, qd, qdd in zip(times, found.q, found.qd, found.qdd):
+        np.testing.assert_allclose(q, t ** np.arange(6) @ c, atol=1e-12)
+        np.testing.assert_allclose(qd, t ** np.arange(5) @ (c[1:].T * np.arange(1, 6)).T, atol=1e-12)
+        second = (c[2:].T * [2, 6, 12, 20]).T
+        np.testing.assert_allclose(qdd, t ** np.arange(4) @ second, atol=1e-12)
+    # A number of times lies between 0 and 1 s.
+    few = robot.jtraj(*ends, 3, seed=3)
+    np.testing.assert_array_equal(few.t, [0.0, 0.5, 1.0])
+    np.testing.assert_allclose(few.q[1], few.q[[0, 2]].mean(axis=0), atol=1e-14)
+    np.testing.assert_allclose(few.qd[1], 1.875 * (few.q[2] - few.q[0]), atol=1e-14)
+    for bad in (1, 0, [0.0], [0.0, 0.0], [1.0, 2.0], [0.0, np.nan], [0.0, np.inf], "soon", None):
+        with pytest.raises(cy.InvalidOptionError, match="^t = "):
+            robot.jtraj(*ends, bad)
+    with pytest.raises(cy.InvalidOptionError, match="^T2 cannot be used: out of reach"):
+        robot.jtraj(ends[0], translation("x", 9.0), 5)
+
+
 def test_pictures():
     plt = pytest.importorskip("matplotlib.pyplot")
     robot = Robot("panda")
@@ -302,8 +339,6 @@ def test_pictures():
 
 def test_what_is_missing_says_what_to_use():
     robot = Robot("panda")
-    with pytest.raises(NotImplementedError, match="use cylindroid.JointMove"):
-        robot.jtraj
     with pytest.raises(NotImplementedError, match="'rne' of the Robotics Toolbox is not in"):
         robot.rne
     with pytest.raises(NotImplementedError, match="limits are always kept"):
@@ -366,7 +401,7 @@ def test_every_member_is_there_or_says_what_to_use():
         except NotImplementedError as error:
             message = str(error)
             assert message.startswith(f"'{name}' of the Robotics Toolbox is not in"), message
-    assert here >= 37
+    assert here >= 38
 
 
 def test_a_robot_keeps_a_state():

@@ -23,7 +23,6 @@ INSTEAD = {
     "ets twists dhunique A a alpha d theta offset mdh": "Mechanism.joint_axes and Mechanism.fk_all",
     "ikine_a ikine_analytic ikine_6s analytic_ik isspherical": "Mechanism.ik, which uses closed "
     "forms",
-    "jtraj": "cylindroid.JointMove",
     "plot_ellipse": "cylindroid.plot.ellipsoid",
     "teach": "cylindroid.show",
     "inertia r": "Mechanism.mass_matrix",

@@ -13,15 +13,14 @@ What is as there: ``jacob0`` has world axes and its linear part at the end effec
 4 x 4, not ``SE3``; all methods of inverse kinematics are the one of `Mechanism.ik`, which keeps joint
 limits, so that options of their searches (``method``, ``k``, ``pinv``, ...) are accepted and change
 nothing; ``plot``, ``vellipse`` and ``fellipse`` draw with matplotlib and return its axes; frames are
-named, not numbered; ``manipulability`` of an arm with fewer joints than axes is
-the volume that its joints do span, where there it is zero. Members of the Toolbox that are not here
-raise `NotImplementedError` with the function that does the same.
+named, not numbered; ``manipulability`` of an arm with fewer joints than axes is the volume that its
+joints do span, where there it is zero. Members of the Toolbox that are not here raise
+`NotImplementedError` with the function that does the same.
 """
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -40,32 +39,9 @@ from ._toolbox_arguments import (
     stored_vector,
     task_of,
 )
+from ._toolbox_results import IKSolution, Trajectory, from_pose_to_pose
 
-__all__ = ["IKSolution", "Robot"]
-
-
-@dataclass(frozen=True)
-class IKSolution:
-    """What `ikine_LM` returns, with the names of the Toolbox.
-
-    Attributes
-    ----------
-    q : ndarray, (n,)
-    success : bool
-    iterations : int
-    searches : int
-    residual : float
-        Half the squared error, metres and radians, unscaled.
-    reason : str
-        Empty on success.
-    """
-
-    q: NDArray[np.float64]
-    success: bool
-    iterations: int
-    searches: int
-    residual: float
-    reason: str
+__all__ = ["IKSolution", "Robot", "Trajectory"]
 
 
 class Robot:
@@ -470,6 +446,30 @@ class Robot:
         return found.q, int(found.success), found.iterations, found.searches, found.residual
 
     ik_NR = ik_GN = ik_LM
+
+    def jtraj(self, T1: ArrayLike, T2: ArrayLike, t: ArrayLike, **options: Any) -> Trajectory:
+        """Joints from one pose to another, in a straight line between configurations.
+
+        Parameters
+        ----------
+        T1, T2 : array_like, (4, 4)
+            Poses of the end effector (m).
+        t : int, or array_like, (N,)
+            A number of times from 0 to 1 s, or times that rise from 0 (s).
+        **options
+            Those of `ikine_LM`; the search for the second pose starts at the first configuration.
+
+        Returns
+        -------
+        Trajectory
+            From rest to rest; `cylindroid.JointMove` keeps limits on velocities and accelerations.
+
+        Raises
+        ------
+        InvalidOptionError
+            A pose that is not reached.
+        """
+        return from_pose_to_pose(partial(self.ikine_LM, **options), T1, T2, t)
 
     def _ellipse(self, q: ArrayLike | None, opt: str, kind: str, options: dict[str, Any]) -> Any:
         from . import plot
