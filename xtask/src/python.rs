@@ -115,12 +115,12 @@ pub(crate) fn figures() -> Result<()> {
     run(Command::new(python).args(script))
 }
 
-/// Writes what the Python of the book prints into its pages.
+/// Writes what the Python of the book prints into its pages, and the notebooks of the tutorials.
 pub(crate) fn write_outputs() -> Result<()> {
     let (python, _) = installed()?;
     let pytest = ["-m", "pytest", "-q", "-p", "no:cacheprovider"];
-    let book = format!("{TESTS}/test_book.py");
-    run(Command::new(python).args(pytest).arg(book).env("CYLINDROID_WRITE_BOOK", "1"))
+    let writers = ["book", "tutorials"].map(|name| format!("{TESTS}/test_{name}.py"));
+    run(Command::new(python).args(pytest).args(writers).env("CYLINDROID_WRITE_BOOK", "1"))
 }
 
 /// Calls with random arguments for so many seconds, from this seed on.

@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import urllib.request
 
 import numpy as np
@@ -22,7 +23,10 @@ assert robot.fk(robot.home).shape == (4, 4)
 with cy.show(robot, open=False) as view:
     assert b"app" in urllib.request.urlopen(view.url).read()
 assert cy.pinv(robot.jacobian(np.tile(robot.home, (3, 1)))).matrix.shape == (3, 7, 6)
-# The wheel installs the command.
+# It carries the tutorials.
+with tempfile.TemporaryDirectory() as folder:
+    assert len(cy.tutorials(folder)) == 3
+# It installs the command.
 command = shutil.which("cylindroid", path=os.path.dirname(sys.executable))
 assert command
 subprocess.run([command, "fk", "panda"], check=True, stdout=subprocess.DEVNULL)

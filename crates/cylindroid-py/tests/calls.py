@@ -1,7 +1,9 @@
 """Every public call of the package with arguments that it accepts; tests change one at a time."""
 
+import contextlib
 import inspect
 import os
+import tempfile
 
 import numpy as np
 
@@ -70,11 +72,9 @@ TWIST = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
 LINES = [[0, 0, 0, 0, 0, 1], [0, -1, 0, 1, 0, 0]]
 FINGERS = [cy.FingerContact([x, 0, 0], [-x, 0, 0], mu=0.5, torsion=0.01) for x in (1.0, -1.0)]
 
-
 VIEW, CLOSED = cy.show(PANDA, open=False), cy.show(PANDA, open=False)
 VIEW.add_obstacle("ball", "sphere", [0.5, 0, 0.5], radius=0.1)
 CLOSED.close()
-
 
 #: No page opens.
 os.environ["BROWSER"] = "true"
@@ -82,6 +82,11 @@ os.environ["BROWSER"] = "true"
 
 def shown(**arguments):
     cy.show(**arguments).close()
+
+
+def copied(**arguments):
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        cy.tutorials(**arguments)
 
 
 def obstructed(**arguments):
@@ -390,6 +395,7 @@ def calls():
          {"mechanism": PLANAR, "components": ["x", "y"], "shape": "box", "scales": [1.0, 0.5],
           "at": {"rz": 0.1}, "free": None, "frame": PLANAR.reference, "tool": np.eye(4),
           "q": PLANAR.home, "limits": False, "rays": 4, "seed": 1}),
+        ("tutorials", copied, {"folder": "new"}),
         ("show", shown,
          {"mechanism": PANDA, "q": PANDA.home, "frame": "flange", "tool": np.eye(4),
           "open": False, "height": 600, "host": "127.0.0.1", "port": 0, "meshes": (),
@@ -487,7 +493,7 @@ def public():
         for path, function in [(name, thing)] + [(f"{name}.{m}", getattr(thing, m)) for m in members]:
             try:
                 parameters = inspect.signature(function).parameters if callable(function) else ()
-            except ValueError:  # of a class whose objects come from elsewhere
-                continue
+            except ValueError:
+                continue  # a class whose objects come from elsewhere
             if [p for p in parameters if p != "self"]:
                 yield path

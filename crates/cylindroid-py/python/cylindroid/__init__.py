@@ -163,6 +163,7 @@ from ._errors import (
 )
 from ._show import show
 from ._sweeps import SweepColumn, sweep
+from ._tutorials import tutorials
 
 __all__ = [
     "ActuatorTransmission",
@@ -198,7 +199,6 @@ __all__ = [
     "Gradient",
     "GraspMobility",
     "GraspQuality",
-    "HalfSpace",
     "HybridCommand",
     "HybridController",
     "HyperbolicSvd",
@@ -214,13 +214,11 @@ __all__ = [
     "JointTorques",
     "JointVelocitiesTask",
     "LimitAvoidanceTask",
-    "LimitAvoidanceTask",
     "ManipulabilityTask",
     "Limb",
     "LoadReport",
     "LoopClosureError",
     "Manipulability",
-    "ManipulabilityTask",
     "Margin",
     "Mechanism",
     "MissingFileError",
@@ -311,6 +309,7 @@ __all__ = [
     "singularity_free_zone",
     "sweep",
     "transversals",
+    "tutorials",
     "velocity_conversion",
     "workspace_map",
     "wrench_pitch_form",
