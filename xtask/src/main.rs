@@ -72,6 +72,9 @@ cargo xtask <task>
             --advisories reads those of RustSec (needs github.com)
   simd      runs the tests of laws once for each form of the kernels that the processor has beside
             its best (CYLINDROID_SIMD); test runs those that call the kernels
+  platforms
+            compiles the code for Windows, macOS and Linux on ARM as far as it goes without their
+            linkers (needs rustup and its server)
   limits [millions] [first round]
             runs 10 million servo steps (release build) over random robots, tasks, limits, starts
             and pushes, and prints every limit that is left, with the round that repeats it
@@ -140,6 +143,7 @@ fn run() -> Result<()> {
         Some("ros2") => ros2::task(std::env::args().nth(2).as_deref()),
         Some("deny") => deny::task(std::env::args().nth(2).as_deref()),
         Some("simd") => models::fetch().and_then(|robots| steps::simd(&robots)),
+        Some("platforms") => steps::platforms(),
         Some("limits") => {
             let arguments: Vec<String> = std::env::args().skip(2).collect();
             let argument = |i: usize| arguments.get(i).map(String::as_str);

@@ -113,6 +113,23 @@ fn in_all_forms(robots: &Path, chosen: &[&str]) -> Result<()> {
     Ok(())
 }
 
+/// Systems and processors that the code is compiled for beside these.
+const PLATFORMS: [&str; 3] =
+    ["x86_64-pc-windows-gnu", "aarch64-apple-darwin", "aarch64-unknown-linux-gnu"];
+
+/// The code of all crates, as the compiler sees it for other systems and processors.
+pub(crate) fn platforms() -> Result<()> {
+    for target in PLATFORMS {
+        run(Command::new("rustup").args(["target", "add", target]))
+            .context("the standard library of another system comes from rustup")?;
+        step(target, || {
+            let check = ["check", "--quiet", "--workspace", "--exclude", "xtask", "--target"];
+            run(cargo(&check).arg(target))
+        })?;
+    }
+    Ok(())
+}
+
 /// The models whose vectors MuJoCo makes.
 const MUJOCO_ROBOTS: [&str; 12] = [
     "baxter", "gr1", "iiwa", "jaco", "kinova3", "panda", "sawyer", "spot", "spot_arm", "tiago",
