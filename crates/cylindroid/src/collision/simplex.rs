@@ -22,6 +22,7 @@ pub(super) struct Vertex {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Simplex {
     vertices: [Vertex; 4],
+    /// Those of the first `count` vertices; the rest are not read.
     weights: [f64; 4],
     count: usize,
 }
@@ -31,7 +32,7 @@ type Nearest = ([f64; 4], f64);
 
 impl Simplex {
     pub(super) fn new(first: Vertex) -> Self {
-        Self { vertices: [first; 4], weights: [1.0, 0.0, 0.0, 0.0], count: 1 }
+        Self { vertices: [first; 4], weights: [1.0; 4], count: 1 }
     }
 
     pub(super) fn contains(&self, point: Vec3) -> bool {

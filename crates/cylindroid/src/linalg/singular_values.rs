@@ -308,6 +308,17 @@ mod tests {
         assert!(extreme_singular_values(Matrix::diagonal(&[1.0, 2.0, f64::NAN, 1.0])).is_none());
     }
 
+    /// c y + s z = r, -s y + c z = 0; nothing is not turned.
+    #[test]
+    fn rotations_annul_the_second() {
+        for (y, z) in [(3.0, 4.0), (-3.0, 4.0), (0.0, -2.0), (2.0, 0.0)] {
+            let (c, s, r) = rotation(y, z);
+            assert!((c * y + s * z - r).abs() < 1e-15 && (c * z - s * y).abs() < 1e-15);
+            assert!((c * c + s * s - 1.0).abs() < 1e-15);
+        }
+        assert_eq!(rotation(0.0, 0.0), (1.0, 0.0, 0.0));
+    }
+
     /// A wrong fallback is only slower: the shares of matrices that need more steps are bounded by
     /// those of the method, and three QR steps for each value are enough for all.
     #[test]

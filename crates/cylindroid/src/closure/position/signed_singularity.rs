@@ -157,6 +157,9 @@ mod tests {
                 assert_eq!(sign(&swapped), -sign(&a));
             }
             assert_eq!(sign(&Matrix::zeros(n, n)), 0.0);
+            // A zero on the diagonal is no zero determinant: ones beside it, a cycle of n.
+            let cycle = Matrix::from_fn(n, n, |i, j| f64::from(u8::from((i + 1) % n == j)));
+            assert_eq!(sign(&cycle), if n % 2 == 0 { -1.0 } else { 1.0 });
         }
     }
 

@@ -226,3 +226,23 @@ fn constraint_index(
     };
     screws.limbs.iter().enumerate().map(of).try_fold(f64::INFINITY, |least, x| Some(least.min(x?)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A force through the axis about which the body turns has no power, whatever its direction;
+    /// one at a distance all of it, a couple the cosine.
+    #[test]
+    fn indices_of_a_force_and_of_a_couple() {
+        let turn = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
+        let through = Wrench { force: Vec3::X, moment: Vec3::ZERO };
+        assert_eq!(index(through, turn, Vec3::ZERO, 1.0), 0.0);
+        let arm = Vec3::new(0.0, -2.0, 0.0);
+        let beside = Wrench { force: Vec3::X, moment: arm.cross(Vec3::X) };
+        assert!((index(beside, turn, arm, 1.0) - 1.0).abs() < 1e-15);
+        let couple = Wrench { force: Vec3::ZERO, moment: Vec3::new(0.0, 3.0, 4.0) };
+        assert!((index(couple, turn, arm, 1.0) - 0.8).abs() < 1e-15);
+        assert_eq!(index(couple, Twist { angular: Vec3::ZERO, ..turn }, arm, 1.0), 0.0);
+    }
+}

@@ -245,7 +245,9 @@ impl Saddle {
                 step = step.signum() * step.abs().max(whole).min(QUADRATIC);
             }
             for ((rate, v), free) in self.rates.iter_mut().zip(way).zip(&self.is_free) {
-                *rate += if *free { step * v } else { 0.0 };
+                if *free {
+                    *rate += step * v;
+                }
             }
         }
         let scale = around.gain * (QUADRATIC / norm(&self.rates)).min(1.0);

@@ -179,3 +179,34 @@ impl TaskRows {
         if square > 0.0 { reduced / square } else { f64::INFINITY }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// e^T U^2 J y / e^T U^2 e, U = 1 / length for lengths; the same in other units of length.
+    #[test]
+    fn progress_weighs_lengths_and_angles() {
+        let rows = |unit: f64| TaskRows {
+            measured_error: vec![0.0; 2],
+            error: vec![0.2 * unit, -0.3],
+            feed_forward: vec![0.0; 2],
+            jacobian: Matrix::from_rows(&[[0.5 * unit, unit], [-1.0, 2.0]]).unwrap(),
+            is_length: vec![true, false],
+        };
+        let rates = [0.7, -0.4];
+        let velocity = [0.5 * 0.7 - 0.4, -0.7 - 0.8];
+        let weights = [1.0 / 0.25, 1.0];
+        let expected = (weights[0] * 0.2 * velocity[0] - weights[1] * 0.3 * velocity[1])
+            / (weights[0] * 0.04 + weights[1] * 0.09);
+        for unit in [1.0, 1000.0] {
+            let found = rows(unit).progress(&rates, 0.5 * unit);
+            assert!(
+                (found - expected).abs() < 1e-15 * expected.abs().max(1.0),
+                "{found} {expected}"
+            );
+        }
+        let none = TaskRows { error: vec![0.0; 2], ..rows(1.0) };
+        assert_eq!(none.progress(&rates, 0.5), f64::INFINITY);
+    }
+}

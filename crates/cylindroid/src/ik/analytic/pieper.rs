@@ -90,8 +90,9 @@ pub(super) fn parallel(
         scale: [reach, 1.0],
         start: [start[0], start[4]],
     };
-    let (elbow, elbow_rest) = coefficients(p23, n, p34);
-    let links = p23.dot(p23) + p34.dot(p34) + 2.0 * elbow_rest;
+    // Both links are perpendicular to the parallel axes.
+    let (elbow, _) = coefficients(p23, n, p34);
+    let links = p23.dot(p23) + p34.dot(p34);
     pair.any(g.order, |first, fifth| {
         let shoulder = first.back(h[0], p) - p12;
         let mut arm = |whole: Angle, sixth: Angle| {

@@ -109,6 +109,20 @@ fn frames_change_nothing() {
     }
 }
 
+/// Seen from ten thousand lengths away, where moments are a hundred million times larger.
+#[test]
+fn a_far_origin_changes_nothing() {
+    let mut random = Random(187);
+    let k = random_stiffness(&mut random, 6);
+    let here = eigenscrews(&k, 0.4).unwrap();
+    for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+        let pose = Pose { translation: axis * 1e4, ..Pose::IDENTITY };
+        let there = eigenscrews(&moved(&k, pose), 0.4).unwrap();
+        assert_eq!(there.kind, here.kind);
+        assert_close("values", &values(&there), &values(&here), 1e-5);
+    }
+}
+
 /// Ball's principal screws of inertia: on the principal axes through the centre of mass, of the
 /// pitches h +- sqrt(h^2 + r^2), with the eigenvalues m p.
 #[test]

@@ -39,6 +39,24 @@ fn singular_values_are_those_of_a_step_and_the_weakest_motion_needs_most() {
     }
 }
 
+/// A slider cannot turn its tool: no singular value, and a ratio of zero.
+#[test]
+fn without_any_motion_of_the_task_the_ratio_is_zero() {
+    let slider = r#"<robot name="slider"><link name="base"/><link name="cart"/>
+        <joint name="slide" type="prismatic"><parent link="base"/><child link="cart"/>
+        <axis xyz="1 0 0"/><limit lower="-1" upper="1" velocity="1" effort="1"/></joint></robot>"#;
+    let robot =
+        cylindroid::model::formats::urdf::parse(slider, std::path::Path::new("slider.urdf"))
+            .unwrap();
+    let turn = Task { components: [false, false, false, true, true, true], ..Task::POSE };
+    let mut servo = servo(&robot, |o| o.task = turn);
+    assert_eq!(servo.condition(&[0.0]).unwrap().singular_ratio, 0.0);
+    let pose = robot.state(&[0.0]).unwrap().pose(robot.tool()).unwrap();
+    let turned = Pose { rotation: Rpy { roll: 0.3, pitch: 0.0, yaw: 0.0 }.rotation(), ..pose };
+    let step = servo.step(&[0.0], turned).unwrap();
+    assert_eq!((step.singular_ratio, step.rank), (0.0, 0));
+}
+
 /// Pointing is a task in the axes of the tool; what is lost is told in those of the world.
 #[test]
 fn the_weakest_motion_is_in_world_axes() {
