@@ -1,12 +1,13 @@
 //! Licences, duplicates, sources and advisories of dependencies, by cargo-deny and `deny.toml`;
 //! licences of npm and Python packages by `licences.py`.
 
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 
 use crate::python;
-use crate::shell::{cargo, root, run};
+use crate::shell::run;
+use crate::tools::tool;
 
 const VERSION: &str = "0.20.2";
 
@@ -33,15 +34,6 @@ pub(crate) fn task(argument: Option<&str>) -> Result<()> {
 }
 
 fn with(checks: &[&str]) -> Result<()> {
-    let tools = root().join("target/tools");
-    let program = tools.join("bin").join(format!("cargo-deny{}", std::env::consts::EXE_SUFFIX));
-    let version = Command::new(&program).arg("--version").stderr(Stdio::null()).output();
-    let is_there = version.is_ok_and(|v| String::from_utf8_lossy(&v.stdout).contains(VERSION));
-    if !is_there {
-        println!("installing cargo-deny {VERSION} in target/tools (some minutes, once)");
-        let mut install = cargo(&["install", "--quiet", "--locked", "--debug", "--force"]);
-        install.args(["--no-default-features", "--version", VERSION, "--root"]).arg(&tools);
-        run(install.arg("cargo-deny")).context("cargo-deny needs a way to crates.io")?;
-    }
+    let program = tool("cargo-deny", VERSION, &["--no-default-features"])?;
     run(Command::new(program).args(["--workspace", "--locked", "check"]).args(checks))
 }

@@ -20,6 +20,7 @@ mod ros2;
 mod shell;
 mod small_sizes;
 mod steps;
+mod tools;
 mod viewer;
 
 use std::process::ExitCode;
@@ -105,11 +106,13 @@ cargo xtask <task>
             counts instructions of the kernels (valgrind) and compares with the file in
             crates/cylindroid/benches, or writes it
   man DIR   writes the manual pages of the command line
-  release [--build]
+  release [--build] [--since COMMIT]
             packages the crates and the Python package's sources, with the page of the viewer, and
             prints what would be uploaded with sizes (needs Node.js, Python, crates.io and PyPI;
             uploads nothing); with --build builds and uses each from its file alone, and
-            the C library from its folder
+            the C library from its folder; with --since checks that the version fits to what changed
+            in the library's public interface since a commit, by cargo-semver-checks, which it
+            installs (needs crates.io)
   figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {
@@ -162,7 +165,7 @@ fn run() -> Result<()> {
             instructions::check(std::env::args().nth(2).as_deref() == Some("--write"))
         }
         Some("man") => steps::man(std::env::args().nth(2).as_deref()),
-        Some("release") => release::task(std::env::args().nth(2).as_deref()),
+        Some("release") => release::task(&std::env::args().skip(2).collect::<Vec<String>>()),
         Some("figures") => steps::figures(),
         None | Some("help" | "--help" | "-h") => {
             println!("{HELP}");

@@ -10,11 +10,13 @@ use std::process::{Child, Command, Stdio};
 use anyhow::{Context, Result, bail, ensure};
 
 use crate::shell::{captured, cargo, copy_folder, root, run};
+use crate::tools::tool;
 use crate::{c_install, python, viewer};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The page inside the crate of the command line.
 const PAGE: &str = "crates/cylindroid-cli/page";
+const SEMVER_CHECKS: &str = "0.51.0";
 /// Larger crates are refused by crates.io (bytes).
 const LARGEST_CRATE: u64 = 10_000_000;
 /// The library first.
@@ -47,9 +49,20 @@ impl Drop for Running {
     }
 }
 
-/// `cargo xtask release [--build]`.
-pub(crate) fn task(argument: Option<&str>) -> Result<()> {
-    ensure!(matches!(argument, None | Some("--build")), "release takes --build alone");
+/// `cargo xtask release [--build] [--since COMMIT]`.
+pub(crate) fn task(arguments: &[String]) -> Result<()> {
+    let (mut is_built, mut since) = (false, None);
+    let mut words = arguments.iter().map(String::as_str);
+    while let Some(word) = words.next() {
+        match word {
+            "--build" => is_built = true,
+            "--since" => since = Some(words.next().context("--since needs a commit")?),
+            other => bail!("release has the options --build and --since COMMIT, not '{other}'"),
+        }
+    }
+    if let Some(commit) = since {
+        compare(commit)?;
+    }
     let changed = captured(Command::new("git").args(["status", "--porcelain"]))?;
     let (crates, distribution) = packages()?;
     println!("what would be uploaded, version {VERSION}:");
@@ -64,10 +77,18 @@ pub(crate) fn task(argument: Option<&str>) -> Result<()> {
     if !changed.is_empty() {
         println!("\nnot in the last commit, and yet in the packages:\n{changed}");
     }
-    if argument.is_some() {
+    if is_built {
         build(&crates, &distribution)?;
     }
     Ok(())
+}
+
+/// Fails if the public interface of the library changed since a commit by more than the version
+/// allows.
+fn compare(commit: &str) -> Result<()> {
+    let program = tool("cargo-semver-checks", SEMVER_CHECKS, &[])?;
+    let check = ["semver-checks", "--package", CRATES[0], "--baseline-rev", commit];
+    run(Command::new(program).args(check))
 }
 
 /// The crates for crates.io and the source distribution for PyPI.

@@ -91,4 +91,4 @@ from cylindroid import plot
 
 ax = plot.mechanism(robot)
 plot.ellipsoid(report.kinematic, robot.fk(robot.home)[:3, 3], ax, scale=0.2)
-plot.trajectory(outcome.trajectory, robot.joint_names)
+axes = plot.trajectory(outcome.trajectory, robot.joint_names)
