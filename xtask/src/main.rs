@@ -47,7 +47,7 @@ cargo xtask <task>
             with --use builds and runs the examples with what is installed
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
             PyPI and the npm registry); --serve shows it while you write, --outputs writes what
-            its commands and its Python print into the pages
+            its commands and its Python print into the pages, and the notebooks of the tutorials
   layers    checks that the library's modules import only those before them, that no files import
             one another in a circle, that headers name tests that exist, and that files are short;
             --circles lists every import of the circles, --checked only the headers
@@ -74,8 +74,8 @@ cargo xtask <task>
   simd      runs the tests of laws once for each form of the kernels that the processor has beside
             its best (CYLINDROID_SIMD); test runs those that call the kernels
   platforms
-            compiles the code for Windows, macOS and Linux on ARM as far as it goes without their
-            linkers (needs rustup and its server)
+            checks the types of the library and of all programs for Windows, macOS and Linux on ARM
+            (needs rustup and its server)
   limits [millions] [first round]
             runs 10 million servo steps (release build) over random robots, tasks, limits, starts
             and pushes, and prints every limit that is left, with the round that repeats it
@@ -110,9 +110,9 @@ cargo xtask <task>
             packages the crates and the Python package's sources, with the page of the viewer, and
             prints what would be uploaded with sizes (needs Node.js, Python, crates.io and PyPI;
             uploads nothing); with --build builds and uses each from its file alone, and
-            the C library from its folder; with --since checks that the version fits to what changed
-            in the library's public interface since a commit, by cargo-semver-checks, which it
-            installs (needs crates.io)
+            the C library from its folder; with --since checks that the version allows what
+            changed in the library's public interface since a commit, by cargo-semver-checks, which
+            it installs (needs crates.io)
   figures   draws the figures of the README and the book (needs Python and PyPI)";
 
 fn main() -> ExitCode {

@@ -1,5 +1,6 @@
 //! A release, up to the upload: the crates and the source distribution of the Python package, with
-//! the page of the viewer inside, are made, listed with their sizes, and built from their files.
+//! the page of the viewer inside, are made, listed with their sizes, and built from their files; the
+//! public interface is compared with that of a commit.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -56,7 +57,10 @@ pub(crate) fn task(arguments: &[String]) -> Result<()> {
     while let Some(word) = words.next() {
         match word {
             "--build" => is_built = true,
-            "--since" => since = Some(words.next().context("--since needs a commit")?),
+            "--since" => {
+                let commit = words.next().filter(|word| !word.starts_with('-'));
+                since = Some(commit.context("--since needs a commit")?);
+            }
             other => bail!("release has the options --build and --since COMMIT, not '{other}'"),
         }
     }
@@ -84,7 +88,7 @@ pub(crate) fn task(arguments: &[String]) -> Result<()> {
 }
 
 /// Fails if the public interface of the library changed since a commit by more than the version
-/// allows.
+/// allows; the other crates are programs.
 fn compare(commit: &str) -> Result<()> {
     let program = tool("cargo-semver-checks", SEMVER_CHECKS, &[])?;
     let check = ["semver-checks", "--package", CRATES[0], "--baseline-rev", commit];

@@ -113,11 +113,11 @@ fn in_all_forms(robots: &Path, chosen: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Systems and processors that the code is compiled for beside these.
+/// Systems and processors that the code is checked for besides Linux on x86-64.
 const PLATFORMS: [&str; 3] =
     ["x86_64-pc-windows-gnu", "aarch64-apple-darwin", "aarch64-unknown-linux-gnu"];
 
-/// The code of all crates, as the compiler sees it for other systems and processors.
+/// Checks the types of the library and the programs for other systems and processors.
 pub(crate) fn platforms() -> Result<()> {
     for target in PLATFORMS {
         run(Command::new("rustup").args(["target", "add", target]))

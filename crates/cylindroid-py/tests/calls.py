@@ -84,9 +84,10 @@ def shown(**arguments):
     cy.show(**arguments).close()
 
 
-def copied(**arguments):
-    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        cy.tutorials(**arguments)
+def copied(folder):
+    leads_out = isinstance(folder, str) and (folder.startswith("/") or ".." in folder)
+    with tempfile.TemporaryDirectory() as inside, contextlib.chdir(inside):
+        cy.tutorials("new" if leads_out else folder)
 
 
 def obstructed(**arguments):

@@ -6,6 +6,9 @@ import pathlib
 
 import pytest
 
+# No window opens.
+os.environ.setdefault("MPLBACKEND", "Agg")
+
 figures = pytest.StashKey[list[str]]()
 
 

@@ -296,11 +296,12 @@ def test_joints_from_pose_to_pose():
     found = robot.jtraj(*ends, times, seed=3)
     assert (len(found), found.naxes) == (5, 7)
     np.testing.assert_array_equal(found.t, times)
+    # Half the squared error is 1e-6 at most.
     for end, q in zip(ends, found.q[[0, -1]]):
-        np.testing.assert_allclose(robot.fkine(q), end, atol=2e-3)
+        np.testing.assert_allclose(robot.fkine(q), end, rtol=0.0, atol=np.sqrt(2e-6))
     # The second configuration is that which the search finds from the first.
     second = robot.ikine_LM(ends[1], q0=found.q[0], seed=3).q
-    np.testing.assert_allclose(found.q[-1], second, atol=1e-15)
+    np.testing.assert_allclose(found.q[-1], second, rtol=0.0, atol=1e-15)
     # The six conditions of a polynomial of fifth order, and its values by them alone.
     T = times[-1]
     powers = [[np.prod(range(k - d + 1, k + 1)) * (t ** max(k - d, 0)) * (k >= d) for k in range(6)]
@@ -309,20 +310,23 @@ def test_joints_from_pose_to_pose():
     zero = np.zeros_like(way)
     c = np.linalg.solve(powers, [found.q[0], zero, zero, found.q[-1], zero, zero])
     for t, q, qd, qdd in zip(times, found.q, found.qd, found.qdd):
-        np.testing.assert_allclose(q, t ** np.arange(6) @ c, atol=1e-12)
-        np.testing.assert_allclose(qd, t ** np.arange(5) @ (c[1:].T * np.arange(1, 6)).T, atol=1e-12)
-        second = (c[2:].T * [2, 6, 12, 20]).T
-        np.testing.assert_allclose(qdd, t ** np.arange(4) @ second, atol=1e-12)
+        rates = (c[1:].T * np.arange(1, 6)).T
+        for got, of in ((q, c), (qd, rates), (qdd, (rates[1:].T * np.arange(1, 5)).T)):
+            np.testing.assert_allclose(got, t ** np.arange(len(of)) @ of, rtol=0.0, atol=1e-12)
     # A number of times lies between 0 and 1 s.
     few = robot.jtraj(*ends, 3, seed=3)
     np.testing.assert_array_equal(few.t, [0.0, 0.5, 1.0])
     np.testing.assert_allclose(few.q[1], few.q[[0, 2]].mean(axis=0), atol=1e-14)
     np.testing.assert_allclose(few.qd[1], 1.875 * (few.q[2] - few.q[0]), atol=1e-14)
-    for bad in (1, 0, [0.0], [0.0, 0.0], [1.0, 2.0], [0.0, np.nan], [0.0, np.inf], "soon", None):
-        with pytest.raises(cy.InvalidOptionError, match="^t = "):
+    for bad in (1, 0, [0.0], [0.0, 0.0], [1.0, 2.0], [0.0, np.nan], [0.0, np.inf], [0.0, 1e-200], "soon",
+                None, 10**6 + 1, 10**30, np.array([0.0, 1 + 1j]), [[0.0, 1.0]], [0.0, 10**400], True):
+        with pytest.raises(cy.InvalidOptionError, match="^t: ") as told:
             robot.jtraj(*ends, bad)
-    with pytest.raises(cy.InvalidOptionError, match="^T2 cannot be used: out of reach"):
+        assert told.value.option == "t"
+    with pytest.raises(cy.InvalidOptionError, match="^T2: out of reach"):
         robot.jtraj(ends[0], translation("x", 9.0), 5)
+    with pytest.raises(cy.InvalidOptionError, match=r"^T1: .*not \(2, 4, 4\)"):
+        robot.jtraj(np.stack(ends), ends[1], 5)
 
 
 def test_pictures():

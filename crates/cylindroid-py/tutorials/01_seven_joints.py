@@ -84,7 +84,8 @@ rates = cy.Servo(robot, secondary="none").step(robot.home, still, secondary=elbo
 assert np.abs(robot.jacobian(robot.home) @ rates).max() < 1e-12
 
 # %% [markdown]
-# Pictures, which need matplotlib: `pip install cylindroid[plot]`.
+# Pictures, which need matplotlib (`pip install matplotlib`). Outside of a notebook, `plt.show()`
+# opens them.
 
 # %%
 from cylindroid import plot

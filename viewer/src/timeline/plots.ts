@@ -80,7 +80,7 @@ export class Plots {
     context.font = font;
     const legends = shown.map(({ chart }) => legendOf(context, chart.entries, width, scale));
     canvas.width = width;
-    canvas.height = shown.reduce((sum, one, i) => sum + one.canvas.height + title + line * (legends[i]?.at(-1)?.row ?? 0) + line, 0);
+    canvas.height = shown.reduce((sum, one, i) => sum + one.canvas.height + title + line * rowsOf(legends[i]), 0);
     context.fillStyle = colour("panel");
     context.fillRect(0, 0, canvas.width, canvas.height);
     let y = 0;
@@ -98,7 +98,7 @@ export class Plots {
         context.fillStyle = colour("ink");
         context.fillText(label, x + 16 * scale, y + row * line + 11 * scale);
       }
-      y += line * (legend.at(-1)?.row ?? 0) + line;
+      y += line * rowsOf(legend);
     }
     return new Promise((resolve, reject) => canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be encoded"))), "image/png"));
   }
@@ -124,6 +124,11 @@ export class Plots {
     for (const chart of this.charts.values()) chart.show(this.recording);
     this.at(this.moment.index, this.moment.time);
   }
+}
+
+/** Rows of a legend, one at least. */
+function rowsOf(legend: { row: number }[] = []): number {
+  return (legend.at(-1)?.row ?? 0) + 1;
 }
 
 /** Where the names of lines are in a picture: in rows that end within its width. */

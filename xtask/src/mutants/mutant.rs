@@ -9,6 +9,8 @@ pub(super) struct Mutant {
     /// Relative to the library's `src`.
     pub(super) file: String,
     pub(super) line: usize,
+    /// The whole line, without the spaces around it.
+    pub(super) text: String,
     /// Bytes of the file.
     pub(super) range: std::ops::Range<usize>,
     pub(super) old: String,

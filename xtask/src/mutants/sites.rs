@@ -87,7 +87,8 @@ impl Visitor<'_> {
         let mut changed = old.clone();
         changed.replace_range(part.start - range.start..part.end - range.start, new);
         let (file, line) = (self.name.to_owned(), whole.start().line);
-        self.found.push(Mutant { file, line, range, old, new: changed });
+        let text = self.text.lines().nth(line - 1).unwrap_or_default().trim().to_owned();
+        self.found.push(Mutant { file, line, text, range, old, new: changed });
     }
 }
 

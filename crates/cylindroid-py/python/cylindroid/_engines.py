@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from ._core import SweepPlan
-from ._errors import CylindroidError, InvalidOptionError, UnreadableFileError
+from ._errors import CylindroidError, InvalidOptionError, UnreadableFileError, refused
 
 #: Parts of each worker that are handed out at a time: it never waits for the driver.
 AHEAD = 4
@@ -34,12 +34,6 @@ RETRIES = 10
 MANIFEST = "manifest.json"
 #: Size and XXH3 checksum (128 bits, hexadecimal) of a part.
 Listed = tuple[int, str]
-
-
-def _refused(reason: str) -> InvalidOptionError:
-    error = InvalidOptionError(f"engine: {reason}")
-    error.option, error.reason = "engine", reason
-    return error
 
 
 class _Uri:
@@ -186,7 +180,8 @@ class _Executor:
         except CylindroidError:
             raise
         except (pickle.PicklingError, AttributeError, TypeError) as error:
-            raise _refused(
+            raise refused(
+                "engine",
                 f"{error}; what goes to another process is pickled: columns need functions of a "
                 "module"
             ) from error
@@ -200,7 +195,8 @@ class _Ray:
         try:
             ray: Any = importlib.import_module("ray")
         except ImportError as error:
-            raise _refused(
+            raise refused(
+                "engine",
                 "'ray' needs Ray: pip install ray, or this package with [ray]"
             ) from error
         self.ray = ray
@@ -254,7 +250,7 @@ def opened(engine: Any, threads: Any) -> Iterator[_Executor | _Ray]:
     elif isinstance(engine, str) and engine == "ray":
         yield _Ray()
     else:
-        raise _refused(f"{engine!r:.99} is neither 'ray' nor a concurrent.futures.Executor")
+        raise refused("engine", f"{engine!r:.99} is neither 'ray' nor a concurrent.futures.Executor")
 
 
 def run(

@@ -83,6 +83,13 @@ class InvalidOptionError(CylindroidError, ValueError):
     reason: str = ""
 
 
+def refused(option: str, reason: str) -> InvalidOptionError:
+    """The error about an argument by name."""
+    error = InvalidOptionError(f"{option}: {reason}")
+    error.option, error.reason = option, reason
+    return error
+
+
 class ArgumentTypeError(CylindroidError, TypeError):
     """An argument that is no number, text or object of the right kind."""
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _engines
 from ._core import Mechanism, SweepPlan
-from ._errors import ArgumentTypeError, InvalidOptionError
+from ._errors import ArgumentTypeError, refused
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -239,19 +239,13 @@ def sweep(
     if not isinstance(resume, (bool, np.bool_)):
         raise ArgumentTypeError("resume: true or false is needed")
     if out is None and resume:
-        raise _refused("resume", "name the folder with out")
+        raise refused("resume", "name the folder with out")
     if engine is None and not _engines.is_uri(out):
         return plan.collect(threads) if out is None else plan.write(out, resume, threads)
     if engine is not None and threads is not None:
-        raise _refused("threads", "an engine has its own workers; leave out threads or engine")
+        raise refused("threads", "an engine has its own workers; leave out threads or engine")
     with _engines.opened(engine, threads) as workers:
         return _engines.run(workers, plan, arguments, out, resume)
-
-
-def _refused(option: str, reason: str) -> InvalidOptionError:
-    error = InvalidOptionError(f"{option}: {reason}")
-    error.option, error.reason = option, reason
-    return error
 
 
 def _columns(columns: Any, in_folder: bool) -> list[tuple[str, str, str, Any]]:
@@ -267,7 +261,7 @@ def _columns(columns: Any, in_folder: bool) -> list[tuple[str, str, str, Any]]:
         if not isinstance(column, SweepColumn):
             column = SweepColumn(column)
         if in_folder and not column.version:
-            raise _refused(
+            raise refused(
                 "columns",
                 f"'{name}' has no version, by which a resumed folder knows its function; give one: "
                 "SweepColumn(function, version='1')",

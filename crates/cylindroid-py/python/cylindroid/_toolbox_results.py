@@ -1,20 +1,22 @@
-"""What `cylindroid.rtb` returns, with the names of the Robotics Toolbox."""
+"""Results of `cylindroid.rtb`, with the names of the Robotics Toolbox."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import InvalidOptionError
+from ._errors import refused
+
+#: As everywhere in the package.
+MOST_TIMES = 1_000_000
 
 
 @dataclass(frozen=True)
 class IKSolution:
-    """What `ikine_LM` returns, with the names of the Toolbox.
+    """Result of `ikine_LM`, with the names of the Toolbox.
 
     Attributes
     ----------
@@ -38,7 +40,7 @@ class IKSolution:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """What `jtraj` returns, with the names of the Toolbox.
+    """Result of `jtraj`, with the names of the Toolbox.
 
     Attributes
     ----------
@@ -69,34 +71,42 @@ def from_pose_to_pose(
     times, ends = _times_of(t), []
     given: dict[str, NDArray[np.float64]] = {}
     for name, pose in (("T1", T1), ("T2", T2)):
+        if np.shape(pose) != (4, 4):
+            raise refused(name, f"a pose of shape (4, 4) is needed, not {np.shape(pose)}")
         found = inverse(pose, **given)
         if not found.success:
-            raise InvalidOptionError(f"{name} cannot be used: {found.reason}")
+            raise refused(name, found.reason)
         given = {"q0": found.q}
         ends.append(found.q)
-    return _quintic(ends[0], ends[1], times)
+    trajectory = _quintic(ends[0], ends[1], times)
+    if not np.isfinite(trajectory.qdd).all():
+        raise refused("t", f"{times[-1]} s are too short for a motion")
+    return trajectory
 
 
-def _times_of(t: Any) -> NDArray[np.float64]:
+def _times_of(t: ArrayLike) -> NDArray[np.float64]:
     """The times of the Toolbox's argument `t`, (N,): so many from 0 to 1 s, or those given (s).
 
     Raises
     ------
     InvalidOptionError
-        Fewer than two times, or times that do not begin at zero and rise.
+        Fewer than two times or more than a million, or times that do not begin at zero and rise.
     """
-    if isinstance(t, (int, np.integer)) and t >= 2:
+    if isinstance(t, (int, np.integer)) and 2 <= t <= MOST_TIMES:
         return np.linspace(0.0, 1.0, int(t))
+    wanted = f"2 to {MOST_TIMES} times that rise from 0 s, or their number, are needed"
     try:
-        times = np.array(t, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InvalidOptionError(f"t = {t!r}: times or their number are needed") from error
-    rises = times.ndim == 1 and len(times) >= 2 and times[0] == 0.0 and np.all(np.diff(times) > 0.0)
-    if not (rises and np.isfinite(times[-1])):
-        raise InvalidOptionError(
-            f"t = {t!r} cannot be used: at least two times from 0 s on, each later than the one "
-            "before it, or their number"
-        )
+        times = np.array(t)
+        if np.iscomplexobj(times):
+            raise TypeError("complex numbers")
+        times = times.astype(float)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise refused("t", f"{wanted}, not {t!r:.99}") from error
+    if times.ndim != 1 or not 2 <= len(times) <= MOST_TIMES:
+        raise refused("t", f"{wanted}, not {t!r:.99}")
+    rises = times[0] == 0.0 and np.isfinite(times[-1]) and np.all(np.diff(times) > 0.0)
+    if not rises:
+        raise refused("t", f"{wanted}, not {t!r:.99}")
     return times
 
 
@@ -109,6 +119,7 @@ def _quintic(
     """
     law = np.polynomial.Polynomial([0.0, 0.0, 0.0, 10.0, -15.0, 6.0])
     length, way = times[-1], end - start
-    shares = [law.deriv(order)(times / length) / length**order for order in range(3)]
-    q, qd, qdd = (np.outer(share, way) for share in shares)
+    with np.errstate(all="ignore"):  # of times so short that nothing finite moves so fast
+        shares = [law.deriv(order)(times / length) / length**order for order in range(3)]
+        q, qd, qdd = (np.outer(share, way) for share in shares)
     return Trajectory(times, start + q, qd, qdd)

@@ -6,11 +6,13 @@ import os
 from importlib import resources
 from pathlib import Path
 
-from ._errors import ArgumentTypeError, InvalidOptionError
+from ._errors import ArgumentTypeError, refused
 
 
 def tutorials(folder: str | os.PathLike[str]) -> list[Path]:
     """Copies the tutorials, notebooks of Jupyter, into a folder, which is made if it is missing.
+
+    Open them with JupyterLab (``pip install jupyterlab matplotlib``) or an editor.
 
     Parameters
     ----------
@@ -26,9 +28,7 @@ def tutorials(folder: str | os.PathLike[str]) -> list[Path]:
     ArgumentTypeError
         No path.
     InvalidOptionError
-        A notebook of this name is there already, and nothing is copied; no path can be this text.
-    OSError
-        The folder cannot be written.
+        A notebook of this name is there already, and nothing is copied; the folder cannot be written.
 
     Examples
     --------
@@ -40,20 +40,18 @@ def tutorials(folder: str | os.PathLike[str]) -> list[Path]:
     try:
         to = Path(folder)
     except TypeError as error:
-        raise ArgumentTypeError(f"folder = {folder!r}: a path is needed") from error
+        raise ArgumentTypeError(f"folder = {folder!r:.99}: a path is needed") from error
     carried = resources.files(__package__) / "notebooks"
-    notebooks = sorted(carried.iterdir(), key=lambda notebook: notebook.name)
-    paths = [to / notebook.name for notebook in notebooks]
+    notebooks = {n.name: n.read_bytes() for n in carried.iterdir() if n.name.endswith(".ipynb")}
+    paths = [to / name for name in sorted(notebooks)]
     for path in paths:
-        if path.exists():
-            raise InvalidOptionError(
-                f"folder = {os.fspath(folder)!r} cannot be used: {path} is there already; move it away "
-                "or choose another folder"
-            )
+        if os.path.lexists(path):
+            raise refused("folder", f"{path} is there already; move it away or choose another folder")
     try:
         to.mkdir(parents=True, exist_ok=True)
-    except ValueError as error:  # of texts that no path can be
-        raise InvalidOptionError(f"folder = {os.fspath(folder)!r} cannot be used: {error}") from error
-    for notebook, path in zip(notebooks, paths):
-        path.write_bytes(notebook.read_bytes())
+        for path in paths:
+            with path.open("xb") as file:
+                file.write(notebooks[path.name])
+    except (OSError, ValueError) as error:  # of texts that no path can be
+        raise refused("folder", f"nothing can be written there: {error}") from error
     return paths

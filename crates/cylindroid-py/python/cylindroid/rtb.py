@@ -448,7 +448,7 @@ class Robot:
     ik_NR = ik_GN = ik_LM
 
     def jtraj(self, T1: ArrayLike, T2: ArrayLike, t: ArrayLike, **options: Any) -> Trajectory:
-        """Joints from one pose to another, in a straight line between configurations.
+        """A motion of the joints between two poses, along a straight line of configurations.
 
         Parameters
         ----------
@@ -457,7 +457,7 @@ class Robot:
         t : int, or array_like, (N,)
             A number of times from 0 to 1 s, or times that rise from 0 (s).
         **options
-            Those of `ikine_LM`; the search for the second pose starts at the first configuration.
+            Those of `ikine_LM`; `q0` is for T1, from whose configuration the search for T2 starts.
 
         Returns
         -------
@@ -467,7 +467,7 @@ class Robot:
         Raises
         ------
         InvalidOptionError
-            A pose that is not reached.
+            A pose that is not reached, times that do not rise.
         """
         return from_pose_to_pose(partial(self.ikine_LM, **options), T1, T2, t)
 

@@ -164,6 +164,14 @@ fn encodings_are_told() {
     assert_eq!(note.line, 2);
     assert!(note.what.starts_with("bytes that are not UTF-8"), "{}", note.what);
     assert!(note.what.contains("part.xml"), "{}", note.what);
+    let part = b"<sdf version='1.9'>\n<model name='\xe4'><link name='l'/></model></sdf>".to_vec();
+    written(&folder, "part.sdf", part);
+    let whole = b"<sdf version='1.9'><model name='m'><link name='b'/><include><uri>part.sdf</uri>\
+        </include></model></sdf>";
+    let m = load_file(&written(&folder, "whole.sdf", whole.to_vec())).unwrap();
+    let mut notes = m.report().ignored.iter();
+    let note = notes.find(|note| note.what.starts_with("bytes that are not UTF-8")).unwrap();
+    assert!(note.line == 2 && note.what.contains("part.sdf"), "{}", note.what);
     let utf16: Vec<u8> = "\u{feff}<robot/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert!(told(|| load_file(&written(&folder, "a.urdf", utf16))).contains("UTF-16"));
 }

@@ -22,7 +22,7 @@
 //! Why so   the maximum is geometric: neither units nor the size of the twists enter
 //! Source   Wang, Wu & Liu 2010 (input, output, local index); Chen & Angeles 2007 (the maximum and
 //!          the point A); Liu, Chen & Nahon 2014 (constraints)
-//! Checked  tests/it/closure/transmission.rs
+//! Checked  tests/it/closure/transmission.rs, tests in this file
 
 use super::generic_mobility::GenericMobility;
 use crate::closure::mobility::limb_motion::PlatformCoordinates;
@@ -236,8 +236,10 @@ mod tests {
     #[test]
     fn indices_of_a_force_and_of_a_couple() {
         let turn = Twist { linear: Vec3::ZERO, angular: Vec3::Z };
-        let through = Wrench { force: Vec3::X, moment: Vec3::ZERO };
-        assert_eq!(index(through, turn, Vec3::ZERO, 1.0), 0.0);
+        for force in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(0.3, -0.2, 0.7)] {
+            let through = Wrench { force, moment: Vec3::ZERO };
+            assert_eq!(index(through, turn, Vec3::ZERO, 1.0), 0.0);
+        }
         let arm = Vec3::new(0.0, -2.0, 0.0);
         let beside = Wrench { force: Vec3::X, moment: arm.cross(Vec3::X) };
         assert!((index(beside, turn, arm, 1.0) - 1.0).abs() < 1e-15);

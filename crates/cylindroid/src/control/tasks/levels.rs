@@ -1,7 +1,7 @@
 //! Memory of a stack of tasks: the rows of each task, and the levels that they form.
 //!
 //! Shapes   of a task: rows x n; of a level: the sum of the rows of its tasks x n
-//! Checked  tests/it/servo/tasks.rs
+//! Checked  tests/it/servo/tasks.rs, tests in this file
 
 use std::ops::Range;
 

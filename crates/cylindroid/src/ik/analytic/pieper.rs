@@ -90,7 +90,7 @@ pub(super) fn parallel(
         scale: [reach, 1.0],
         start: [start[0], start[4]],
     };
-    // Both links are perpendicular to the parallel axes.
+    // Both links are perpendicular to the parallel axes, to ALIGNED_AXES: the rest is its square.
     let (elbow, _) = coefficients(p23, n, p34);
     let links = p23.dot(p23) + p34.dot(p34);
     pair.any(g.order, |first, fifth| {

@@ -120,7 +120,7 @@ impl<'d> ByInclude<'d> {
     /// Logs the bytes of the included files that are not UTF-8.
     pub(super) fn note_replaced(&self, reader: &mut Reader<'_>) {
         for (file, at) in &self.replaced {
-            reader.notes.add_in(*file, *at, text_file::NOT_UTF8.0, text_file::NOT_UTF8.1, "");
+            reader.notes.add_in(*file, *at, text_file::NOT_UTF8, text_file::WHY_REPLACED, "");
         }
     }
 

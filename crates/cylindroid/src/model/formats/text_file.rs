@@ -22,9 +22,11 @@ pub(super) struct TextFile {
     pub(super) replaced: Option<usize>,
 }
 
-/// Subject and reason of the note that bytes were replaced.
-pub(super) const NOT_UTF8: (&str, &str) =
-    ("bytes that are not UTF-8", "names and texts have \u{fffd} for them; save the file as UTF-8");
+/// Subject of the note that bytes were replaced.
+pub(super) const NOT_UTF8: &str = "bytes that are not UTF-8";
+/// Its reason.
+pub(super) const WHY_REPLACED: &str =
+    "names and texts have \u{fffd} for them; save the file as UTF-8";
 
 impl TextFile {
     /// The text of TOML, which is UTF-8: bytes that are not are an error at their place.
@@ -38,7 +40,7 @@ impl TextFile {
     /// Line, subject and reason of the note that bytes were replaced, if any were.
     pub(super) fn note(&self) -> Option<(usize, &'static str, &'static str)> {
         let line = self.text[..self.replaced?].matches('\n').count() + 1;
-        Some((line, NOT_UTF8.0, NOT_UTF8.1))
+        Some((line, NOT_UTF8, WHY_REPLACED))
     }
 }
 
