@@ -168,7 +168,7 @@ fn encodings_are_told() {
     written(&folder, "part.sdf", part);
     let whole = b"<sdf version='1.9'><model name='m'><link name='b'/><include><uri>part.sdf</uri>\
         </include></model></sdf>";
-    let m = load_file(&written(&folder, "whole.sdf", whole.to_vec())).unwrap();
+    let m = load_file(&written(&folder, "whole.sdf", whole)).unwrap();
     let mut notes = m.report().ignored.iter();
     let note = notes.find(|note| note.what.starts_with("bytes that are not UTF-8")).unwrap();
     assert!(note.line == 2 && note.what.contains("part.sdf"), "{}", note.what);
