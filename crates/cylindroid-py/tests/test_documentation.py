@@ -14,6 +14,10 @@ HERE = pathlib.Path(__file__).parent
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
+def test_public_names_stand_once():
+    assert len(set(cy.__all__)) == len(cy.__all__)
+
+
 def documented():
     yield "cylindroid", cy
     for name in cy.__all__:

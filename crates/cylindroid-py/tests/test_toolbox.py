@@ -327,6 +327,8 @@ def test_joints_from_pose_to_pose():
         robot.jtraj(ends[0], translation("x", 9.0), 5)
     with pytest.raises(cy.InvalidOptionError, match=r"^T1: .*not \(2, 4, 4\)"):
         robot.jtraj(np.stack(ends), ends[1], 5)
+    with pytest.raises(cy.InvalidOptionError, match="^T2: .*several lengths"):
+        robot.jtraj(ends[0], [[1.0], [2.0, 3.0]], 5)
 
 
 def test_pictures():

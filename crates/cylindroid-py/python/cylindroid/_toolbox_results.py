@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._errors import refused
 
-#: As everywhere in the package.
+#: Times of a motion; the package counts no further anywhere.
 MOST_TIMES = 1_000_000
 
 
@@ -71,8 +71,12 @@ def from_pose_to_pose(
     times, ends = _times_of(t), []
     given: dict[str, NDArray[np.float64]] = {}
     for name, pose in (("T1", T1), ("T2", T2)):
-        if np.shape(pose) != (4, 4):
-            raise refused(name, f"a pose of shape (4, 4) is needed, not {np.shape(pose)}")
+        try:
+            shape = np.shape(pose)
+        except ValueError as error:
+            raise refused(name, "a pose of shape (4, 4) is needed, not rows of several lengths") from error
+        if shape != (4, 4):
+            raise refused(name, f"a pose of shape (4, 4) is needed, not {shape}")
         found = inverse(pose, **given)
         if not found.success:
             raise refused(name, found.reason)
@@ -94,19 +98,15 @@ def _times_of(t: ArrayLike) -> NDArray[np.float64]:
     """
     if isinstance(t, (int, np.integer)) and 2 <= t <= MOST_TIMES:
         return np.linspace(0.0, 1.0, int(t))
-    wanted = f"2 to {MOST_TIMES} times that rise from 0 s, or their number, are needed"
+    wanted = f"2 to {MOST_TIMES} times that rise from 0 s, or their number, are needed, not {t!r:.99}"
     try:
-        times = np.array(t)
-        if np.iscomplexobj(times):
-            raise TypeError("complex numbers")
-        times = times.astype(float)
+        given = np.array(t)
+        times = given.real.astype(float)
     except (TypeError, ValueError, OverflowError) as error:
-        raise refused("t", f"{wanted}, not {t!r:.99}") from error
-    if times.ndim != 1 or not 2 <= len(times) <= MOST_TIMES:
-        raise refused("t", f"{wanted}, not {t!r:.99}")
-    rises = times[0] == 0.0 and np.isfinite(times[-1]) and np.all(np.diff(times) > 0.0)
-    if not rises:
-        raise refused("t", f"{wanted}, not {t!r:.99}")
+        raise refused("t", wanted) from error
+    is_list = not np.iscomplexobj(given) and times.ndim == 1 and 2 <= len(times) <= MOST_TIMES
+    if not (is_list and times[0] == 0.0 and np.isfinite(times[-1]) and np.all(np.diff(times) > 0.0)):
+        raise refused("t", wanted)
     return times
 
 
