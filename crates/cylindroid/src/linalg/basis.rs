@@ -10,6 +10,7 @@
 //!          (its orthogonality)
 //! Checked  tests in this file
 
+use super::matrix::Matrix;
 use super::small_gemm::{AlignedColumns, LANES, lanes};
 use crate::scalar::{Array, Simd4};
 #[cfg(target_arch = "x86_64")]
@@ -42,6 +43,14 @@ impl LowerTriangle {
             let (head, rest) = x[i..].split_at_mut(1);
             head[0] /= column[0];
             rest.iter_mut().zip(&column[1..]).for_each(|(x, l)| *x -= l * head[0]);
+        }
+    }
+
+    /// The transpose of the leading m x m triangle of `a`, which is upper.
+    pub(crate) fn load_transposed(&mut self, a: &Matrix, m: usize) {
+        for i in 0..m {
+            let column = self.entries.column_mut(i)[i..m].iter_mut().enumerate();
+            column.for_each(|(j, x)| *x = a[(i, i + j)]);
         }
     }
 

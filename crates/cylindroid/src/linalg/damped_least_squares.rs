@@ -10,7 +10,7 @@
 //!          (refinement)
 //! Checked  tests in this file (against the SVD)
 
-use super::vector::dot;
+use super::vector::{dot, dot_unrolled};
 use crate::scalar::SimdFloat;
 
 /// The least-squares problem of one configuration, or of a batch.
@@ -92,7 +92,7 @@ impl Damped {
         for i in 0..n {
             for j in 0..=i {
                 let apart = clamped[i] || clamped[j];
-                self.gram[i * n + j] = if apart { 0.0 } else { dot(column(i), column(j)) };
+                self.gram[i * n + j] = if apart { 0.0 } else { dot_unrolled(column(i), column(j)) };
             }
             self.gram[i * n + i] += if clamped[i] { 1.0 } else { damping };
             self.rest[i] = if clamped[i] { 0.0 } else { dot(column(i), e) };

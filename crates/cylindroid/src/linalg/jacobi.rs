@@ -100,6 +100,20 @@ impl Rotations {
         }
     }
 
+    /// For matrices of another shape.
+    pub(super) fn reshape(&mut self, long: usize, k: usize) {
+        self.k = k;
+        self.b.reshape(long, k);
+        self.lengths.reshape(k, 1);
+        let Self { w, last_turn, next, products, angles, turn, square, .. } = self;
+        for square in [w, last_turn, next, products, angles, turn, square] {
+            square.reshape(k, k);
+        }
+        self.pairs.clear();
+        self.pairs.extend(round_robin(k));
+        self.row.resize(k * LANES, 0.0);
+    }
+
     pub(super) fn reset(&mut self) {
         self.w.fill(0.0);
         for j in 0..self.k {
@@ -417,18 +431,17 @@ fn norm<R: Simd4>(squares: R) -> f64 {
 /// All pairs of k columns, ordered so that neighbours share no column: the processor works on
 /// several rotations at once, whose square roots would otherwise depend on each other.
 pub(crate) fn round_robin_pairs(k: usize) -> Vec<(usize, usize)> {
+    round_robin(k).collect()
+}
+
+fn round_robin(k: usize) -> impl Iterator<Item = (usize, usize)> {
     let ring = (k + k % 2).saturating_sub(1);
-    let mut pairs = Vec::with_capacity(k * k / 2);
-    for round in 0..ring {
-        for i in 0..=ring / 2 {
-            let a = if i == 0 { ring } else { (round + i) % ring };
-            let b = (round + ring - i) % ring;
-            if a < k && b < k && a != b {
-                pairs.push((a.min(b), a.max(b)));
-            }
-        }
-    }
-    pairs
+    let places = (0..ring).flat_map(move |round| (0..=ring / 2).map(move |i| (round, i)));
+    places.filter_map(move |(round, i)| {
+        let a = if i == 0 { ring } else { (round + i) % ring };
+        let b = (round + ring - i) % ring;
+        (a < k && b < k && a != b).then_some((a.min(b), a.max(b)))
+    })
 }
 
 #[cfg(test)]

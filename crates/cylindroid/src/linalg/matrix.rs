@@ -23,6 +23,13 @@ impl Matrix {
         Self { rows, cols, data: vec![0.0; rows * cols] }
     }
 
+    /// Zeros of another shape, which allocates only for more of them than ever before.
+    pub(crate) fn reshape(&mut self, rows: usize, cols: usize) {
+        (self.rows, self.cols) = (rows, cols);
+        self.data.clear();
+        self.data.resize(rows * cols, 0.0);
+    }
+
     /// The identity of size `n`.
     #[must_use]
     pub fn identity(n: usize) -> Self {

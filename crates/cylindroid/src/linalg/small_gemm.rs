@@ -33,6 +33,13 @@ impl AlignedColumns {
         Self { rows, cols, stride, data: vec![0.0; stride * cols] }
     }
 
+    /// Zeros of another shape, which allocates only for more of them than ever before.
+    pub(super) fn reshape(&mut self, rows: usize, cols: usize) {
+        (self.rows, self.cols, self.stride) = (rows, cols, rows.next_multiple_of(LANES));
+        self.data.clear();
+        self.data.resize(self.stride * cols, 0.0);
+    }
+
     pub(super) fn fill(&mut self, x: f64) {
         self.data.fill(x);
     }

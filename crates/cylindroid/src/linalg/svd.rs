@@ -143,6 +143,15 @@ impl Svd {
         );
     }
 
+    /// For matrices of another shape: the next start is a cold one. It allocates only for larger ones
+    /// than ever before.
+    pub(crate) fn reshape(&mut self, m: usize, n: usize) {
+        if (m, n) != (self.rows, self.cols) {
+            (self.rows, self.cols, self.warm) = (m, n, None);
+            self.rotations.reshape(m.max(n), m.min(n));
+        }
+    }
+
     /// Forgets the last call: the next warm start is a cold one.
     pub(crate) fn forget(&mut self) {
         self.warm = None;

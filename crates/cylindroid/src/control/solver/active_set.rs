@@ -141,6 +141,9 @@ pub(in crate::control) struct ActiveSet {
     candidate: Vec<f64>,
     /// The sign of the bound at which each row stood in the last solution; 0 if at none.
     last: Vec<f64>,
+    /// The point and the working rows to return to.
+    before: Vec<f64>,
+    held: Vec<Working>,
     /// Rounds since the start.
     #[cfg(test)]
     rounds: usize,
@@ -165,6 +168,8 @@ impl ActiveSet {
             normal: vec![0.0; n],
             candidate: vec![0.0; n],
             last: vec![0.0; r],
+            before: vec![0.0; n],
+            held: Vec::with_capacity(n),
             #[cfg(test)]
             rounds: 0,
         }

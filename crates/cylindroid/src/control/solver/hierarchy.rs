@@ -139,6 +139,20 @@ impl ActiveSet {
         level.residual(self.point())
     }
 
+    /// What the least squares of a level leave of its target; the point and the working rows stay as
+    /// they are.
+    pub(in crate::control) fn least_left<'a>(
+        &mut self,
+        level: &'a mut Level,
+        precision: Precision,
+    ) -> &'a [f64] {
+        self.hold();
+        self.least_residual(level, precision);
+        let left = level.left(self.point());
+        self.restore();
+        left
+    }
+
     /// The point nearest to `desired` within what the levels before leave.
     pub(in crate::control) fn approach(&mut self, desired: &[f64], precision: Precision) {
         self.minimise(Objective::Nearest(desired), precision);

@@ -27,6 +27,9 @@ const WHOLE: f64 = 1e-9;
 /// Largest weight of the rows of a task beside those of a task that asks for more [-].
 const MOST_WEIGHT: f64 = 1e3;
 
+/// Parts of the error that bend a motion by less than a thousandth of the least damping [-].
+const STRAIGHT_WAY: f64 = 1e-3 * LEAST_DAMPING;
+
 /// Halvings of the interval of velocities by which distances give way: to a millionth.
 const RELAXATIONS: usize = 20;
 
@@ -200,15 +203,17 @@ impl TaskServo {
             } else {
                 // Weak directions are damped by what bends them, instead of left out.
                 turned.level.target.copy_from_slice(asked);
-                self.set.least_residual(&mut turned.level, STRAIGHT);
                 let DampedLevel { level: own, curvature, .. } = &mut *turned;
-                let left = own.left(self.set.point());
+                let left = self.set.least_left(own, STRAIGHT);
                 curvature.as_mut_slice().fill(0.0);
                 for member in members.iter_mut().filter(|m| m.direction_changed) {
                     let rows = member.rows.clone();
                     let (asked, left) = (&asked[rows.clone()], &left[rows]);
                     let task = &self.tasks[member.task];
                     member.load_left(task.gain, if member.is_curved { asked } else { left });
+                    if norm(&member.left) <= STRAIGHT_WAY {
+                        continue;
+                    }
                     let of_other = (&level.whole, linear.curvature);
                     member.add_curvature(task, self.state.q(), of_other, curvature);
                 }

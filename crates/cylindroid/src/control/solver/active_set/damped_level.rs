@@ -7,7 +7,7 @@
 //! Why so   one damping for all slows motions that are far from any edge for the sake of others
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, sections 3.4 and 10.1; Dauphin et al. 2014 for
 //!          absolute values
-//! Checked  src/control/solver/hierarchy/tests.rs::curved_levels_*, ::damped_levels_*
+//! Checked  tests in this file, src/control/solver/hierarchy/tests.rs::curved_levels_*, ::damped_levels_*
 
 use super::Level;
 use crate::linalg::{Matrix, Svd};
@@ -16,8 +16,11 @@ use crate::linalg::{Matrix, Svd};
 #[derive(Debug, Clone)]
 pub(in crate::control) struct DampedLevel {
     pub(in crate::control) level: Level,
-    /// C; changed by [`DampedLevel::damp`].
+    /// C
     pub(in crate::control) curvature: Matrix,
+    /// The columns of C that are not zero, C without the others, and its decomposition.
+    bent: Vec<usize>,
+    block: Matrix,
     eigen: Svd,
     /// d
     pub(super) damping: f64,
@@ -32,6 +35,8 @@ impl DampedLevel {
         Self {
             level: Level::new(m, n),
             curvature: Matrix::zeros(n, n),
+            bent: Vec::with_capacity(n),
+            block: Matrix::zeros(n, n),
             eigen: Svd::workspace(n, n),
             damping: 0.0,
             is_curved: false,
@@ -62,18 +67,67 @@ impl DampedLevel {
             return;
         }
         self.is_curved = true;
-        for i in 0..n {
-            self.curvature[(i, i)] += shift;
+        // Tasks far from any edge bend nothing.
+        let Self { level, curvature, bent, block, eigen, stacked, .. } = self;
+        bent.clear();
+        bent.extend((0..n).filter(|&j| curvature.column(j).iter().any(|x| *x != 0.0)));
+        block.reshape(bent.len(), bent.len());
+        for (b, &j) in bent.iter().enumerate() {
+            for (x, &i) in block.column_mut(b).iter_mut().zip(&*bent) {
+                *x = curvature[(i, j)];
+            }
+            block[(b, b)] += shift;
         }
-        self.eigen.decompose_warm(&self.curvature);
-        self.stacked.target[..m].copy_from_slice(&self.level.target);
+        eigen.reshape(bent.len(), bent.len());
+        eigen.decompose_warm(block);
+        stacked.target[..m].copy_from_slice(&level.target);
         for j in 0..n {
-            let column = self.stacked.rows.column_mut(j);
-            column[..m].copy_from_slice(self.level.rows.column(j));
-            for (i, x) in column[m..].iter_mut().enumerate() {
-                let value = self.eigen.value(i) - shift;
+            let column = stacked.rows.column_mut(j);
+            column[..m].copy_from_slice(level.rows.column(j));
+            column[m..].fill(0.0);
+        }
+        for (b, &j) in bent.iter().enumerate() {
+            let column = &mut stacked.rows.column_mut(j)[m..];
+            for (i, x) in column[..bent.len()].iter_mut().enumerate() {
+                let value = eigen.value(i) - shift;
                 let counted = if both_signs { value.abs() } else { value.max(0.0) };
-                *x = counted.sqrt() * self.eigen.v(i)[j];
+                *x = counted.sqrt() * eigen.v(i)[b];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::uniform;
+
+    /// B^T B = P(C) where C has columns of zeros, others in every call.
+    #[test]
+    fn curvatures_of_some_columns_are_those_of_all() {
+        let (n, mut random) = (6, 7);
+        let mut level = DampedLevel::new(2, n);
+        for round in 0..60_usize {
+            let bent: Vec<usize> = (0..n).filter(|j| (round >> (j % 6)) & 1 == 0).collect();
+            let mut c = Matrix::zeros(n, n);
+            for &i in &bent {
+                for &j in bent.iter().filter(|j| **j <= i) {
+                    c[(i, j)] = uniform(&mut random) - 0.5;
+                    c[(j, i)] = c[(i, j)];
+                }
+            }
+            level.curvature = c.clone();
+            level.damp(1e-6, true);
+            assert_eq!(level.is_curved, !bent.is_empty());
+            if !level.is_curved {
+                continue;
+            }
+            // |C| = root of C C, as B^T B.
+            let b = Matrix::from_fn(n, n, |i, j| level.stacked.rows[(2 + i, j)]);
+            let absolute = &b.transpose() * &b;
+            let (found, expected) = (&absolute * &absolute, &c * &c);
+            for (x, e) in found.as_slice().iter().zip(expected.as_slice()) {
+                assert!((x - e).abs() < 1e-12, "{bent:?}: {x} {e}");
             }
         }
     }

@@ -36,7 +36,6 @@ impl ActiveSet {
         self.direction.iter_mut().zip(&self.normal).for_each(|(y, z)| *y -= z);
         level.load_residual(&self.direction);
         level.project(&self.basis, self.fixed);
-        level.svd.decompose_warm(&level.projected);
         let (edge, none) = (weak.below * level.scale, weak.none * level.scale);
         let damped = |s: f64, u: &[f64]| match s {
             s if s > edge => 1.0,
@@ -44,13 +43,17 @@ impl ActiveSet {
             _ => 0.0,
         };
         let mut weighted = weights.filter(|(_, weight)| *weight != 1.0);
-        let is_weak = level.svd.values().any(|s| s > none && s <= edge);
-        let Some(first) = weighted.next().filter(|_| is_weak) else {
+        let Some(first) = weighted.next() else {
+            level.svd.decompose_warm(&level.projected);
             return level.filter_target(damped).sqrt();
         };
         let weighted = std::iter::once(first).chain(weighted);
-        let contradicted = level.filter_target(|s, _| if s > none { 1.0 } else { 0.0 });
-        level.residual.copy_from_slice(&level.along);
+        let contradicted = level.remove_contradiction(none).unwrap_or_else(|| {
+            level.svd.decompose_warm(&level.projected);
+            let size = level.filter_target(|s, _| if s > none { 1.0 } else { 0.0 });
+            level.residual.copy_from_slice(&level.along);
+            size
+        });
         for (rows, weight) in weighted.clone() {
             for j in 0..level.projected.cols() {
                 let column = &mut level.projected.column_mut(j)[rows.clone()];
@@ -112,8 +115,41 @@ impl ActiveSet {
         self.keep_rows(level);
     }
 
-    /// Keeps the rows of a level, the largest remainder first.
+    /// Notes the point and the working rows.
+    pub(in crate::control::solver) fn hold(&mut self) {
+        self.before.copy_from_slice(&self.y);
+        self.held.clear();
+        self.held.extend_from_slice(&self.working);
+    }
+
+    /// Returns to what [`ActiveSet::hold`] noted in the same level.
+    pub(in crate::control::solver) fn restore(&mut self) {
+        self.y.copy_from_slice(&self.before);
+        for use_of_row in self.uses.iter_mut().filter(|u| **u != Use::Fixed) {
+            *use_of_row = Use::Free;
+        }
+        self.working.clear();
+        for w in &self.held {
+            self.working.push(*w);
+            self.uses[w.row] = Use::Working;
+        }
+        self.multipliers[..self.working.len()].fill(0.0);
+        self.rebuild(0);
+    }
+
+    /// Keeps the rows of a level, the largest remainder first where they are not clearly independent.
     fn keep_rows(&mut self, level: &mut Level) {
+        // Rows of zeros at the end are none.
+        let m = (0..level.rows.rows()).rev().find(|&i| level.rows.row_norm(i) > 0.0);
+        let m = m.map_or(0, |last| last + 1);
+        // Twice: orthogonal to a rounding, for levels with larger motions than their own.
+        if self.load_rows(level, self.fixed, m, 0.0)
+            && self.basis.orthonormalise(self.fixed, m, DEPENDENT, &mut level.lower)
+        {
+            self.fixed += m;
+            self.rebuild(0);
+            return;
+        }
         level.project(&self.basis, self.fixed);
         let scale = level.scale;
         for _ in 0..level.rows.rows() {

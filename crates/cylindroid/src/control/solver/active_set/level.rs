@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::linalg::{
-    Basis, Damped, DampedProblem, Elimination, LowerTriangle, Matrix, RankGap, Svd, norm,
+    Basis, Damped, DampedProblem, Elimination, LowerTriangle, Matrix, RankGap, Svd, dot, norm,
 };
 
 /// The rows of a level, their targets and the memory to solve it.
@@ -43,8 +43,12 @@ pub(in crate::control) struct Level {
 /// [-].
 const DEFINITE: f64 = 1e-10;
 
-/// Remainders of columns that are zero and that are not [-]: between them singular values decide.
-const CLEAR: RankGap = RankGap { zero: 1e-12, regular: 1e-4 };
+/// Remainders of columns that are zero [-].
+const ZERO: f64 = 1e-12;
+
+/// Singular values below this share of the norm would cost the steps of an elimination their
+/// orthogonality to the working rows [-].
+const CLEAR: f64 = 1e-7;
 
 impl Level {
     pub(in crate::control) fn new(m: usize, n: usize) -> Self {
@@ -110,9 +114,10 @@ impl Level {
         }
     }
 
-    /// The least x that minimises |projected x - residual| where the rank is clear; false elsewhere.
-    pub(super) fn least_squares(&mut self, x: &mut [f64]) -> bool {
-        let Self { system, left, transposed, right, ordered, projected, moving, .. } = self;
+    /// Eliminates the columns of the projected rows; false if singular values below `least` decide the
+    /// rank.
+    fn eliminate(&mut self, least: f64) -> bool {
+        let Self { system, left, projected, moving, lower, .. } = self;
         // Working rows of single unknowns leave columns of zeros.
         moving.clear();
         for j in 0..projected.cols() {
@@ -124,11 +129,23 @@ impl Level {
         }
         let n = moving.len();
         system.column_mut(n).copy_from_slice(&self.residual);
-        let gap = CLEAR.times(self.scale);
-        if !left.eliminate_beside(system, n, 1, gap) {
+        let gap = RankGap { zero: ZERO * self.scale, regular: least };
+        left.eliminate_beside(system, n, 1, gap) && {
+            // Of fewer columns: more of them only increase singular values.
+            lower.load_transposed(system, left.rank());
+            lower.is_clear(left.rank(), least)
+        }
+    }
+
+    /// The least x that minimises |projected x - residual| where all singular values are clearly above the
+    /// share `rank` of the scale, or zero; false elsewhere.
+    pub(super) fn least_squares(&mut self, rank: f64, x: &mut [f64]) -> bool {
+        let least = rank.max(CLEAR) * self.scale;
+        if !self.eliminate(least) {
             return false;
         }
-        let rank = left.rank();
+        let Self { system, left, transposed, right, ordered, moving, .. } = self;
+        let (n, rank) = (moving.len(), left.rank());
         x.fill(0.0);
         if rank == n {
             ordered[..n].copy_from_slice(&system.column(n)[..n]);
@@ -139,6 +156,7 @@ impl Level {
                 let column = transposed.column_mut(i)[..n].iter_mut().enumerate();
                 column.skip(i).for_each(|(j, t)| *t = system[(i, j)]);
             }
+            let gap = RankGap { zero: ZERO * self.scale, regular: least };
             if !right.eliminate_beside(transposed, rank, 0, gap) || right.rank() < rank {
                 return false;
             }
@@ -150,6 +168,23 @@ impl Level {
             x[moving[j]] = *value;
         }
         true
+    }
+
+    /// Takes the part that the projected rows contradict out of residual and target; the square of its
+    /// size, or `None` if singular values below `least` decide the rank.
+    pub(super) fn remove_contradiction(&mut self, least: f64) -> Option<f64> {
+        if !self.eliminate(least) {
+            return None;
+        }
+        let Self { system, left, along, residual, target, moving, .. } = self;
+        along.copy_from_slice(system.column(moving.len()));
+        along[..left.rank()].fill(0.0);
+        left.apply(system, along);
+        for ((r, b), part) in residual.iter_mut().zip(target).zip(&*along) {
+            *r -= part;
+            *b -= part;
+        }
+        Some(dot(along, along))
     }
 
     /// Adds the least motion that changes the first m rows, whose basis is loaded from `first` on, by

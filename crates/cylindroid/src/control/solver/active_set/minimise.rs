@@ -69,11 +69,13 @@ impl ActiveSet {
                 if self.load_rows(level, columns, m, precision.rank) {
                     level.along.copy_from_slice(&level.residual);
                     level.add_least_motion(&self.basis, columns, m, &mut self.direction);
+                    // Rows that depend on the columns before leave a part along them.
+                    self.basis.project_out(columns, &mut self.direction);
                     return;
                 }
                 level.project_on(&self.basis, *projected..columns);
                 *projected = columns;
-                if !level.least_squares(&mut self.direction) {
+                if !level.least_squares(precision.rank, &mut self.direction) {
                     level.load_gains(precision.rank);
                     level.svd.apply_gains_into(&level.residual, &level.gains, &mut self.direction);
                 }

@@ -6,10 +6,10 @@ use clarabel::solver::{
     ZeroConeT,
 };
 
-use super::super::active_set::{DampedLevel, FEASIBLE, Level, Precision, Whole};
+use super::super::active_set::{DampedLevel, FEASIBLE, Level, Precision, Weak, Whole};
 use super::problem::{Problem, Random};
 use super::{ScaledLevel, optimality};
-use crate::linalg::{Matrix, norm};
+use crate::linalg::{Matrix, Svd, dot, norm};
 
 impl Problem {
     fn assert_feasible(&self, y: &[f64], what: &str) {
@@ -207,6 +207,81 @@ fn damped_levels_keep_their_rows_alone() {
         left += u32::from(stops.iter().any(moved));
     }
     assert!(compared > 500 && left > 50, "{compared} compared, {left} left inequalities");
+}
+
+/// The least residual of a level leaves the point, the inequalities that hold it and all that follows
+/// as they are.
+#[test]
+fn least_residuals_change_nothing() {
+    let mut random = Random::seeded(19);
+    let mut held = 0;
+    for round in 0..1000 {
+        let mut problem = Problem::random(&mut random);
+        let n = problem.n;
+        problem.levels.truncate(1);
+        let (a, b) = &problem.levels[0];
+        let run = |looks: bool| {
+            let mut set = problem.active_set();
+            assert!(set.start(&vec![0.4; n]), "round {round}");
+            let mut level = DampedLevel::new(a.rows(), n);
+            level.level.rows = a.clone();
+            level.level.target.copy_from_slice(b);
+            level.damp_alike(0.01);
+            let (before, was_held) = (set.point().to_vec(), set.is_at_bound());
+            let mut least = None;
+            if looks {
+                let left = set.least_left(&mut level.level, Precision::EXACT).to_vec();
+                least = Some(norm(&left));
+                assert_eq!(set.point(), before, "round {round}");
+                assert_eq!(set.is_at_bound(), was_held, "round {round}");
+            }
+            set.solve_damped(&mut level, Precision::EXACT, |_| {});
+            let own = residual(a, b, set.point());
+            assert!(least.is_none_or(|least| least < own + 1e-9), "round {round}");
+            (set.point().to_vec(), was_held)
+        };
+        let ((one, is_held), (other, _)) = (run(true), run(false));
+        let difference: Vec<f64> = one.iter().zip(&other).map(|(x, y)| x - y).collect();
+        assert!(norm(&difference) < 1e-9 * (1.0 + norm(&other)), "round {round}");
+        held += u32::from(is_held);
+    }
+    assert!(held > 100, "{held}");
+}
+
+/// Targets without what their rows contradict, by an elimination where the rank is clear: the
+/// filter of the singular vectors, for rows of all ranks and with weights.
+#[test]
+fn targets_are_reduced_to_what_their_rows_permit() {
+    let mut random = Random::seeded(23);
+    for round in 0..1000 {
+        let (n, m) = (2 + random.below(7), 2 + random.below(7));
+        let rank = 1 + random.below(m.min(n));
+        let [left, right] =
+            [(m, rank), (rank, n)].map(|(r, c)| Matrix::from_fn(r, c, |_, _| random.signed()));
+        let mut level = Level::new(m, n);
+        level.rows = &left * &right;
+        let target: Vec<f64> = (0..m).map(|_| random.signed()).collect();
+        level.target.copy_from_slice(&target);
+        let problem =
+            Problem { n, boxed: false, rows: vec![], lower: vec![], upper: vec![], levels: vec![] };
+        let mut set = problem.active_set();
+        assert!(set.start(&vec![0.0; n]));
+        let svd = Svd::of(&level.rows);
+        // No direction is weak: only what no motion does is left out.
+        let weak = Weak { below: 1e-9, none: 1e-9, curvature: 0.05, least: 1e-6 };
+        let weights = [(0..1, 1.0), (1..m, if round % 2 == 0 { 10.0 } else { 1.0 })];
+        let missing = set.reduce_target(&mut level, weak, |_| 1.0, weights.into_iter());
+        let mut expected = vec![0.0; m];
+        for i in 0..svd.rank(1e-9).rank {
+            let part = dot(svd.u(i), &target);
+            expected.iter_mut().zip(svd.u(i)).for_each(|(x, u)| *x += part * u);
+        }
+        let rest: Vec<f64> = target.iter().zip(&expected).map(|(b, x)| b - x).collect();
+        assert!((missing - norm(&rest)).abs() < 1e-9, "round {round}: {missing}");
+        for (x, e) in level.target.iter().zip(&expected) {
+            assert!((x - e).abs() < 1e-8, "round {round}, {m} x {n}, rank {rank}: {x} {e}");
+        }
+    }
 }
 
 /// Directions are damped by the positive part of their curvature: the optimum of Clarabel for rows that
