@@ -231,6 +231,8 @@ pub(crate) fn optimise<'py>(
         configurations,
         designs: true,
         reach: None,
+        poses: None,
+        task: None,
     };
     let (source, workspace) = chosen.source(robot)?;
     let objectives = [

@@ -113,7 +113,7 @@ impl PySweepPlan {
         configurations = None, quantities = None, frame = None, tool = None, task = None,
         metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new(),
         direction = None, reach = None, directions = VoxelGrid::DIRECTIONS,
-        rolls = VoxelGrid::ROLLS, reach_from = None))]
+        rolls = VoxelGrid::ROLLS, reach_from = None, poses = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
@@ -136,6 +136,7 @@ impl PySweepPlan {
         #[pyo3(from_py_with = argument)] directions: u64,
         #[pyo3(from_py_with = argument)] rolls: u64,
         reach_from: Option<Numbers<'_>>,
+        poses: Option<Bound<'_, PyAny>>,
     ) -> Result<Self> {
         let robot = &*mechanism;
         let mechanism = robot.inner.clone();
@@ -155,7 +156,9 @@ impl PySweepPlan {
             }),
         };
         let is_map = reach.is_some();
-        let chosen = Chosen { samples, seed, over, q, configurations, designs: sampled, reach };
+        let task = task.map(|name| Task::named(name, &mechanism)).transpose()?;
+        let chosen =
+            Chosen { samples, seed, over, q, configurations, designs: sampled, reach, poses, task };
         let (source, parameters) = chosen.source(robot)?;
         let space = match (parameters.is_empty(), sampled) {
             (true, false) => None,
@@ -183,7 +186,7 @@ impl PySweepPlan {
             quantities,
             columns: own.columns(&mechanism),
             end_effector,
-            task: task.map(|name| Task::named(name, &mechanism)).transpose()?,
+            task,
             metric: VelocityMetric::named(metric)?,
             length,
             direction: match &direction {
@@ -399,6 +402,9 @@ pub(crate) struct Chosen<'a, 'py> {
     pub(crate) designs: bool,
     /// The points of a capability map.
     pub(crate) reach: Option<VoxelGrid>,
+    /// Poses that inverse kinematics reaches, and the components that count.
+    pub(crate) poses: Option<Bound<'py, PyAny>>,
+    pub(crate) task: Option<Task>,
 }
 
 impl Chosen<'_, '_> {
@@ -412,8 +418,22 @@ impl Chosen<'_, '_> {
         };
         let designs = self.designs || !split.parameters.is_empty();
         let grid = !split.coordinates.is_empty();
+        let has_others =
+            self.samples.is_some() || grid || self.configurations.is_some() || self.q.is_some();
+        if let Some(poses) = self.poses {
+            if has_others || self.reach.is_some() {
+                let reason = "poses have configurations of their own: leave out samples, over, q, \
+                              configurations and reach";
+                return Err(Failure::option("poses", "poses", reason));
+            }
+            let task = match self.task {
+                Some(task) => task,
+                None => Task::named("pose", &robot.inner)?,
+            };
+            return Ok((pose_rows(&poses, task)?, split.parameters));
+        }
         if let Some(reach) = self.reach {
-            if self.samples.is_some() || grid || self.configurations.is_some() || self.q.is_some() {
+            if has_others {
                 let reason = "points have no configurations: leave out samples, over and others";
                 return Err(Failure::option("reach", "a dict", reason));
             }
@@ -454,6 +474,16 @@ pub(crate) fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
             Ok(ParameterRange { name, from, to })
         })
         .collect()
+}
+
+/// Poses of an array or of a file.
+fn pose_rows(given: &Bound<'_, PyAny>, task: Task) -> Result<Source> {
+    if let Ok(path) = given.extract::<PathBuf>() {
+        let numbers = parquet_configurations(&path, Source::pose_columns(task))?;
+        return Ok(Source::poses(&numbers, task)?);
+    }
+    let poses: Numbers<'_> = entry("poses", given)?;
+    Ok(Source::Poses { targets: poses.poses("poses")?, task })
 }
 
 /// Configurations one after the other, of an array, of columns with names, or of a file.

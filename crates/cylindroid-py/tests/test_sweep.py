@@ -217,6 +217,39 @@ def test_wrong_maps_are_refused():
         cy.sweep(robot, reach=reach, reach_from=[1, 2, 3])
 
 
+def test_poses(tmp_path):
+    robot = cy.load("panda")
+    samples = cy.sweep(robot, samples=30, seed=2, quantities=["pose"], out=tmp_path / "poses")
+    q = np.stack([cy.sweep(robot, samples=30, seed=2, quantities=[])[n] for n in robot.joint_names])
+    poses = robot.fk(q.T)
+    poses[7, :3, 3] += 5.0
+    found = cy.sweep(robot, poses=poses, quantities=["pose", "limit_distance"])
+    assert list(found)[: robot.n + 2] == ["index", *robot.joint_names, "reached"]
+    assert found["reached"].sum() == 29 and found["reached"][7] == 0
+    own = np.stack([found[n] for n in robot.joint_names]).T
+    assert np.isnan(own[7]).all() and np.isnan(found["limit_distance"][7])
+    rest = np.arange(30) != 7
+    assert np.allclose(robot.fk(own[rest]), poses[rest], atol=1e-5)
+    assert (found["limit_distance"][rest] >= 0).all()
+    # The same from the columns that a sweep writes, and of positions alone.
+    part = tmp_path / "poses" / "part-000000.parquet"
+    assert samples.rows == 30 and cy.sweep(robot, poses=part, quantities=[])["reached"].all()
+    youbot = cy.load("youbot")
+    there = youbot.fk(youbot.home)[None]
+    assert cy.sweep(youbot, poses=there, task="position", quantities=[])["reached"] == [1]
+    with ThreadPoolExecutor(2) as workers:
+        again = cy.sweep(robot, poses=poses, quantities=[], engine=workers)
+    assert np.array_equal(again["reached"], found["reached"])
+    for options, told in [({"samples": 3}, "poses have configurations"),
+                          ({"reach": {"x": (0, 1, 2)}}, "poses have configurations")]:
+        with pytest.raises(cy.InvalidOptionError, match=told):
+            cy.sweep(robot, poses=poses, **options)
+    with pytest.raises(cy.InvalidOptionError, match="poses are an array"):
+        cy.sweep(robot, poses=np.eye(4))
+    with pytest.raises(cy.CylindroidError, match="poses"):
+        cy.sweep(robot, poses=np.full((2, 4, 4), np.nan))
+
+
 DESIGNS = pathlib.Path(__file__).parents[3] / "docs/designs.toml"
 
 

@@ -11,7 +11,8 @@ use super::{FrameArgs, ModelArgs};
 use crate::values::{Joints, Numbers};
 
 pub(crate) const ABOUT: &str = "\
-Quantities of millions of configurations: samples within the limits, grids, or a file; capability maps
+Quantities of millions of configurations: samples within the limits, grids, files of configurations \
+or poses; capability maps
 
 Samples are points of a scrambled Sobol' sequence: sample i depends on the seed and i alone. Without \
 --out, statistics of each column are printed. With --out, the rows are written into a folder of \
@@ -22,6 +23,10 @@ are in the manifest.
 Parameters of a mechanism file in --over or --vary are designs, each with all configurations; alone, \
 with the configuration of --q. A design that cannot be loaded has rows with design_valid 0 and no \
 numbers.
+
+--poses asks inverse kinematics for a configuration at each pose of a file, from home: --task names the \
+components that count. Rows have the configuration and reached, 1 or 0; those that are not reached have \
+no other numbers.
 
 --reach asks inverse kinematics at the points of a grid: of --directions that approach from all sides, \
 each with --rolls about it, it finds those that the tool reaches within the limits. Rows have their \
@@ -36,6 +41,7 @@ Examples:
   cylindroid sweep docs/designs.toml --over crank=0.4:0.7:5 --quantities measures
   cylindroid sweep docs/designs.toml --vary crank=0.4:0.7 --designs 100 --quantities measures
   cylindroid sweep stewart --configurations configurations.csv --quantities pose,measures
+  cylindroid sweep ur5e --poses poses.csv --quantities limit_distance,condition --out reached.csv
   cylindroid sweep ur5e --reach x=-1:1:21 --reach z=-0.5:1:16 --plot reach.svg
   cylindroid sweep panda --samples 1e4 --quantities pose,yoshikawa --plot cloud.svg
 
@@ -64,7 +70,7 @@ pub(crate) struct SweepArgs {
     /// Number of samples within the position limits, e.g. 1e6; joints without limits rotate
     /// through -pi to pi. Of a closed chain those of the actuated joints, the others follow from home
     #[arg(long, value_name = "N", group = "sampled", allow_hyphen_values = true)]
-    #[arg(required_unless_present_any = ["over", "vary", "configurations", "reach"])]
+    #[arg(required_unless_present_any = ["over", "vary", "configurations", "poses", "reach"])]
     pub(crate) samples: Option<Count>,
 
     /// Selects one of the sequences of samples and of designs
@@ -89,7 +95,7 @@ pub(crate) struct SweepArgs {
     /// The other coordinates of a grid, or the configuration of all designs [rad or m], as for other
     /// commands
     #[arg(long, value_name = "Q", default_value = "home", allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["samples", "configurations", "reach"])]
+    #[arg(conflicts_with_all = ["samples", "configurations", "poses", "reach"])]
     pub(crate) q: Joints,
 
     /// A .csv, .json or .parquet file with a configuration in each row [rad or m]. Columns with
@@ -97,10 +103,16 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "samples")]
     pub(crate) configurations: Option<PathBuf>,
 
+    /// A .csv, .json or .parquet file with a pose of the tool in each row: x, y, z [m] and a unit
+    /// quaternion qw, qx, qy, qz, without one where --task has no rotations. Inverse kinematics looks
+    /// for a configuration of each
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["samples", "configurations"])]
+    pub(crate) poses: Option<PathBuf>,
+
     /// An axis of a capability map [m]: x, y or z, its first and last value and the number of values;
     /// repeat for further axes, the others are 0
     #[arg(long, value_name = "NAME=A:B:N", allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["samples", "configurations"])]
+    #[arg(conflicts_with_all = ["samples", "configurations", "poses"])]
     pub(crate) reach: Vec<AxisArg>,
 
     /// Approach directions of the tool's z axis at each point, evenly spread over the sphere, in the
@@ -126,7 +138,7 @@ pub(crate) struct SweepArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// Components of the twist that measures and those of the Jacobian see: pose, position, orientation,
+    /// Components of the twist that measures and those of the Jacobian see, and of --poses: pose, position, orientation,
     /// or a list of x,y,z,rx,ry,rz, in world axes [default: pose]
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Option<String>,

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use cylindroid::control::Task;
 use cylindroid::spatial::Rpy;
 use cylindroid::sweep::{Axis, AxisKinds, Source, VoxelGrid};
 use cylindroid::{Error, Mechanism, Pose, Vec3};
@@ -17,6 +18,8 @@ pub(crate) struct Chosen<'a> {
     pub(crate) samples: Option<Count>,
     pub(crate) seed: u64,
     pub(crate) configurations: Option<&'a PathBuf>,
+    /// Poses that inverse kinematics reaches, and the components that count.
+    pub(crate) poses: Option<(&'a Path, Option<&'a str>)>,
     /// The points of a capability map.
     pub(crate) reach: Option<VoxelGrid>,
     pub(crate) q: &'a Joints,
@@ -25,12 +28,13 @@ pub(crate) struct Chosen<'a> {
 
 impl<'a> From<&'a SweepArgs> for Chosen<'a> {
     fn from(args: &'a SweepArgs) -> Self {
-        let SweepArgs { over, samples, seed, configurations, q, model, .. } = args;
+        let SweepArgs { over, samples, seed, configurations, poses, task, q, model, .. } = args;
         Self {
             over,
             samples: *samples,
             seed: *seed,
             configurations: configurations.as_ref(),
+            poses: poses.as_deref().map(|path| (path, task.as_deref())),
             reach: reach(args),
             q,
             srdf: model.srdf.as_deref(),
@@ -62,6 +66,7 @@ impl<'a> From<&'a OptimiseArgs> for Chosen<'a> {
             samples: *samples,
             seed: *seed,
             configurations: configurations.as_ref(),
+            poses: None,
             reach: None,
             q,
             srdf: model.srdf.as_deref(),
@@ -82,12 +87,13 @@ impl Chosen<'_> {
     /// The configurations, of each design if there are designs.
     pub(crate) fn source(&self, robot: &Mechanism) -> cylindroid::Result<Source> {
         let kinds = self.kinds(robot)?;
-        let chosen = match (&self.samples, &self.configurations, &self.reach) {
-            (None, None, None) => None,
-            (Some(_), ..) => Some("samples"),
-            (_, Some(_), _) => Some("configurations"),
-            _ => Some("reach"),
-        };
+        let chosen = [
+            ("samples", self.samples.is_some()),
+            ("configurations", self.configurations.is_some()),
+            ("poses", self.poses.is_some()),
+            ("reach", self.reach.is_some()),
+        ];
+        let chosen = chosen.iter().find(|(_, is_given)| *is_given).map(|(name, _)| name);
         if let (Some(axis), Some(chosen)) = (kinds.coordinates.first(), chosen) {
             return Err(Error::InvalidOption {
                 option: "--over",
@@ -97,6 +103,11 @@ impl Chosen<'_> {
         }
         if let Some(grid) = &self.reach {
             return Ok(Source::Voxels(grid.clone()));
+        }
+        if let Some((path, task)) = self.poses {
+            let task = Task::named(task.unwrap_or("pose"), robot)?;
+            let numbers = number_file::configurations(path, Source::pose_columns(task))?;
+            return Source::poses(&numbers, task);
         }
         if let Some(path) = self.configurations {
             let names = output::joint_names(robot);
@@ -131,6 +142,7 @@ impl Chosen<'_> {
                 };
                 format!("{} points, {orientations}", counts.join(" x "))
             }
+            Source::Poses { .. } => format!("{rows} poses of a file"),
             Source::Home => "home".to_owned(),
             _ if self.configurations.is_none() => "that of --q".to_owned(),
             _ => format!("{rows} of a file"),

@@ -61,6 +61,7 @@ fn examples_run_as_they_stand() {
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let home = ["0"; 21].join(",");
     fs::write(folder.path().join("configurations.csv"), format!("{home}\n{home}\n")).unwrap();
+    fs::write(folder.path().join("poses.csv"), "x,y,z,qw,qx,qy,qz\n0.4,0,0.4,0,1,0,0\n").unwrap();
     let urdf = robots().join("ur_description/urdf/ur5_robot.urdf");
     let mut pages = vec![document("README.md"), text(&["--help"])];
     let commands = commands();

@@ -92,6 +92,35 @@ fn configurations_of_files() {
     assert!(message.contains("no column 'panda_joint1' among index, arm_joint_1"), "{message}");
 }
 
+/// Poses of a sweep are reached again, one farther away is not; positions alone without quaternions.
+#[test]
+fn poses_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (csv, far, places) = (at("poses.csv"), at("far.csv"), at("places.csv"));
+    text(&["sweep", "panda", "--samples", "20", "--quantities", "pose", "--out", &csv]);
+    let of = |file: &str, more: &[&str]| {
+        let sweep = ["sweep", "panda", "--poses", file, "--quantities", "limit_distance"];
+        json(&[&sweep[..], more].concat(), 0)
+    };
+    let report = of(&csv, &[]);
+    assert_eq!(report["configurations"], "20 poses of a file");
+    assert_eq!(column(&report, "reached")["mean"], 1.0);
+    assert!(column(&report, "limit_distance")["smallest"].as_f64().unwrap() >= 0.0);
+    fs::write(&far, "x,y,z,qw,qx,qy,qz\n0.4,0,0.4,0,1,0,0\n4,0,0.4,0,1,0,0\n").unwrap();
+    let report = of(&far, &[]);
+    assert_eq!(column(&report, "reached")["mean"], 0.5);
+    assert_eq!(column(&report, "limit_distance")["not_finite"], 1);
+    fs::write(&places, "0.4,0,0.4\n0,0.5,0.5\n").unwrap();
+    assert_eq!(column(&of(&places, &["--task", "position"]), "reached")["mean"], 1.0);
+    let message = refused(&["sweep", "panda", "--poses", &places]);
+    assert!(message.contains("line 1 has 3 numbers, not 7 (x, y, z, qw"), "{message}");
+    let both = refused(&["sweep", "panda", "--poses", &places, "--samples", "3"]);
+    assert!(both.contains("--samples"), "{both}");
+    let axis = ["sweep", "panda", "--poses", &places, "--over", "panda_joint1=0:1:2"];
+    assert!(refused(&axis).contains("--poses"));
+}
+
 /// Samples of a closed chain, of which some have no path from home.
 #[test]
 fn samples_of_closed_chains() {

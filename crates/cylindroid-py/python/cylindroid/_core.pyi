@@ -1885,6 +1885,7 @@ class SweepPlan:
         directions: int = ...,
         rolls: int = ...,
         reach_from: ArrayLike | None = None,
+        poses: Any = None,
     ) -> SweepPlan: ...
     @property
     def parts(self) -> int: ...

@@ -83,14 +83,15 @@ def sweep(
     directions: int = 50,
     rolls: int = 12,
     reach_from: ArrayLike | None = None,
+    poses: Any = None,
 ) -> Any:
-    """Quantities of many configurations: samples within the limits, a grid, or configurations; or of
-    the points of a capability map.
+    """Quantities of many configurations: samples within the limits, a grid, configurations, or those that
+    reach poses; or of the points of a capability map.
 
     Sample i is a function of `seed` and i alone, and results depend neither on the number of threads nor
     on the engine.
-    At most one of `samples`, coordinates in `over`, `configurations` and `reach` is given. With parameters of
-    the mechanism file in `over`, or with `vary`, all of it is computed for each design.
+    At most one of `samples`, coordinates in `over`, `configurations`, `poses` and `reach` is given. With
+    parameters of the mechanism file in `over`, or with `vary`, all of it is computed for each design.
 
     Parameters
     ----------
@@ -120,8 +121,8 @@ def sweep(
     tool : array_like, (4, 4), optional
         `frame_from_tool`, a tool point fixed to the frame.
     task : str, optional
-        The components that measures and those of the Jacobian see, world axes: 'pose', 'position',
-        'orientation', or some of 'x,y,z,rx,ry,rz'. Default: 'pose'.
+        The components that measures and those of the Jacobian see, and those of `poses` that count, world
+        axes: 'pose', 'position', 'orientation', or some of 'x,y,z,rx,ry,rz'. Default: 'pose'.
     metric : str
         Of 'yoshikawa' and 'measures': 'unit', 'length' or 'limits', as for `manipulability`.
     length : float, optional
@@ -162,6 +163,10 @@ def sweep(
         Rotations about each direction; 0: any, for arms of five joints.
     reach_from : array_like, (4, 4), optional
         Placement of the axes of `reach` in the world. Default: the world.
+    poses : array_like, (N, 4, 4), or path of a Parquet file, optional
+        Poses `world_from_frame` that inverse kinematics reaches from home, in the components of
+        `task`; a file has the columns 'x', 'y', 'z' [m] and, where rotations count, the quaternion
+        'qw', 'qx', 'qy', 'qz'.
 
     Returns
     -------
@@ -171,7 +176,8 @@ def sweep(
         cannot be loaded with its values has 'design_valid' 0 and NaN. Of a capability map 'x', 'y',
         'z', 'directions' and 'orientations' that are reached, 'reachability' and
         'orientation_share', their shares, and 'best_' with the name of each quantity, NaN without a
-        solution. With `out` the summary of the folder.
+        solution. Of poses 'reached', 1 or 0, after the coordinates; those that are not reached have NaN
+        in other columns. With `out` the summary of the folder.
 
     Raises
     ------
@@ -211,6 +217,13 @@ def sweep(
     >>> found = cy.sweep(arm, reach={"x": (0.3, 1.1, 3), "z": (0.2, 0.2, 1)}, directions=20, rolls=4)
     >>> found["reachability"]
     array([1., 1., 0.])
+
+    Which of two poses are reached:
+
+    >>> poses = [arm.fk(arm.home), arm.fk(arm.home)]
+    >>> poses[1][0, 3] = 2.0
+    >>> cy.sweep(arm, poses=poses, quantities=["limit_distance"])["reached"]
+    array([1, 0], dtype=uint64)
     """
     own = _columns(columns, out is not None)
     arguments = {
@@ -234,6 +247,7 @@ def sweep(
         "directions": directions,
         "rolls": rolls,
         "reach_from": reach_from,
+        "poses": poses,
     }
     plan = SweepPlan(**arguments)
     if not isinstance(resume, (bool, np.bool_)):

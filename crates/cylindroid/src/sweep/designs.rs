@@ -249,7 +249,7 @@ impl Designs {
                 frame => own.frame(&nominal.frame_of(frame).name)?,
             };
         }
-        let configurations = Configurations::new(&own, &options.source)?;
+        let configurations = Configurations::new(&own, &options.source, options.place(&own)?)?;
         Ok((configurations, Evaluator::new(&own, &options)?))
     }
 

@@ -60,11 +60,7 @@ enum Volume {
 impl Evaluator {
     pub(super) fn new(mechanism: &Mechanism, options: &SweepOptions) -> Result<Self> {
         let wants = |quantity| options.quantities.contains(&quantity);
-        let length = options.length.unwrap_or(mechanism.reach());
-        Error::check_positive("length", length)?;
-        let default = if mechanism.is_closed() { mechanism.reference() } else { mechanism.tool() };
-        let end_effector = options.end_effector.unwrap_or(default.into());
-        mechanism.check_frame(end_effector.frame)?;
+        let (end_effector, length) = options.place(mechanism)?;
         if mechanism.is_closed()
             && let Some(quantity) = options.quantities.iter().find(|q| !q.has_loops())
         {
@@ -150,6 +146,11 @@ impl Evaluator {
                 index.extend(start..end);
             }
             put(&scratch.q[..count * n], n, n, &mut columns);
+            if from.of_poses()
+                && let Some(Values::Counts(reached)) = columns.next()
+            {
+                reached.extend(std::iter::repeat_n(1, count));
+            }
             self.block(&mut scratch, start, &mut columns)?;
             let first = usize::try_from(start - rows.start).unwrap_or(0);
             for values in out.iter_mut().skip(1) {

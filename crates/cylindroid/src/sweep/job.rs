@@ -47,12 +47,13 @@ impl Sweep {
     /// configurations.
     pub const VOXEL_PART_ROWS: u64 = 1 << 6;
 
-    /// Rows of a part that take a few seconds: of samples and files, of designs and samples of closed
-    /// chains, of capability maps.
+    /// Rows of a part that take a few seconds: of samples and files, of designs, poses and samples of
+    /// closed chains, of capability maps.
     #[must_use]
     pub fn usual_part_rows(mechanism: &Mechanism, source: &Source, has_designs: bool) -> u64 {
         match source {
             Source::Voxels(_) => Self::VOXEL_PART_ROWS,
+            Source::Poses { .. } => Self::DESIGN_PART_ROWS,
             Source::Samples { .. } if mechanism.is_closed() => Self::DESIGN_PART_ROWS,
             _ if has_designs => Self::DESIGN_PART_ROWS,
             _ => Self::PART_ROWS,
@@ -66,7 +67,8 @@ impl Sweep {
     /// quantities that a closed chain does not have or that are named twice, unknown components, a
     /// length that is not positive, a metric of limits that a joint does not have, own columns without
     /// a name or with that of another column; of a capability map own columns, quantities that are no
-    /// index, and orientations that too few joints reach.
+    /// index, and orientations that too few joints reach; of poses components that inverse kinematics
+    /// does not take, and poses that are not finite.
     pub fn new(mechanism: &Mechanism, options: SweepOptions) -> Result<Self> {
         let refuse = |option: &'static str, value: String, reason: &str| {
             Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
@@ -79,7 +81,8 @@ impl Sweep {
                 return refuse("quantities", quantity.name().to_owned(), "it is named twice");
             }
         }
-        let configurations = Configurations::new(mechanism, &options.source)?;
+        let place = options.place(mechanism)?;
+        let configurations = Configurations::new(mechanism, &options.source, place)?;
         check_parts(configurations.rows, options.part_rows)?;
         let evaluator = Evaluator::new(mechanism, &options)?;
         let mut columns = vec![Column::count("index", "place in the sweep, from 0")];
@@ -92,6 +95,9 @@ impl Sweep {
         } else {
             let unit = |c: &Coordinate| Column::number(&c.name, c.kind.unit(), "coordinate");
             columns.extend(mechanism.coordinates().iter().map(unit));
+            if configurations.of_poses() {
+                columns.push(Column::count("reached", "1 if a configuration reaches the pose"));
+            }
             for quantity in &options.quantities {
                 columns.extend(quantity.columns(mechanism, evaluator.values()));
             }

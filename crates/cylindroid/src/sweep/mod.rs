@@ -43,6 +43,7 @@ mod parquet_file;
 mod parquet_input;
 mod parts;
 mod payload;
+mod pose_solutions;
 mod poses;
 mod quantity;
 mod recipe;

@@ -1,10 +1,13 @@
 //! The options of a sweep.
+//!
+//! Checked  tests/sweep/quantities.rs, tests/sweep/pose_files.rs
 
 use super::own_columns::OwnColumn;
 use super::quantity::Quantity;
 use super::source::Source;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
+use crate::model::Mechanism;
 use crate::spatial::Vec3;
 use crate::task::Task;
 
@@ -33,6 +36,25 @@ pub struct SweepOptions {
     pub direction: Vec3,
     /// Rows of a part, the unit of work and the file of [`Sweep::write`](super::Sweep::write).
     pub part_rows: u64,
+}
+
+impl SweepOptions {
+    /// The frame and the characteristic length (m) for a mechanism, which has coordinates.
+    pub(super) fn place(&self, mechanism: &Mechanism) -> Result<(EndEffector, f64)> {
+        if mechanism.n() == 0 {
+            return Err(Error::Model {
+                model: mechanism.name().to_owned(),
+                culprit: String::new(),
+                message: "it has no coordinates to sweep".to_owned(),
+            });
+        }
+        let length = self.length.unwrap_or(mechanism.reach());
+        Error::check_positive("length", length)?;
+        let default = if mechanism.is_closed() { mechanism.reference() } else { mechanism.tool() };
+        let end_effector = self.end_effector.unwrap_or(default.into());
+        mechanism.check_frame(end_effector.frame)?;
+        Ok((end_effector, length))
+    }
 }
 
 impl Default for SweepOptions {

@@ -136,12 +136,22 @@ fn source(source: &Source) -> Value {
             "directions": grid.directions,
             "rolls": grid.rolls,
         }),
-        Source::Configurations(q) => {
-            let mut checksum = Checksum::new();
-            q.iter().for_each(|x| checksum.update(&x.to_le_bytes()));
-            json!({"checksum": checksum.finish()})
+        Source::Poses { targets, task } => {
+            let numbers = targets.iter().flat_map(|pose| pose.to_matrix().into_iter().flatten());
+            json!({
+                "poses_checksum": checksum_of_numbers(numbers),
+                "components": task.components,
+                "axes": task.axes.name(),
+            })
         }
+        Source::Configurations(q) => json!({"checksum": checksum_of_numbers(q.iter().copied())}),
     }
+}
+
+fn checksum_of_numbers(numbers: impl Iterator<Item = f64>) -> String {
+    let mut checksum = Checksum::new();
+    numbers.for_each(|x| checksum.update(&x.to_le_bytes()));
+    checksum.finish()
 }
 
 /// Of joints, loops, contacts and frames with all their numbers.

@@ -16,10 +16,13 @@ use std::ops::Range;
 use super::axis::{Axis, points};
 use super::capability::{VoxelGrid, Voxels};
 use super::closed_samples::ClosedSamples;
+use super::pose_solutions::PoseSolutions;
 use super::sobol::Sobol;
 use crate::error::{Error, Result};
+use crate::kinematics::EndEffector;
 use crate::model::{Coordinate, CoordinateKind, Mechanism};
-use crate::spatial::Quaternion;
+use crate::spatial::{Pose, Quaternion, Rotation, Vec3};
+use crate::task::Task;
 use crate::tolerance::MAX_MAGNITUDE;
 
 /// The configurations of a sweep.
@@ -46,10 +49,60 @@ pub enum Source {
     Home,
     /// These, one after the other, n numbers each (rad or m).
     Configurations(Vec<f64>),
+    /// Poses of the tool, in world axes: of each a configuration that reaches it, by inverse kinematics
+    /// from home, and whether there is one (`reached`); rows without one have no other numbers.
+    Poses {
+        /// One for each row.
+        targets: Vec<Pose>,
+        /// The components of the pose that count.
+        task: Task,
+    },
     /// A capability map: no configurations but points of a grid, and orientations of the tool that
     /// inverse kinematics is asked for there. Quantities are indices of which the best value over the
     /// solutions is found.
     Voxels(VoxelGrid),
+}
+
+impl Source {
+    /// The columns of a file of poses: positions (m), with unit quaternions where rotations count.
+    #[must_use]
+    pub fn pose_columns(task: Task) -> &'static [&'static str] {
+        let count = if task.components[3..].contains(&true) { 7 } else { 3 };
+        &["x", "y", "z", "qw", "qx", "qy", "qz"][..count]
+    }
+
+    /// [`Source::Poses`] from rows of numbers in the columns of [`Source::pose_columns`]; quaternions of
+    /// any length but zero.
+    ///
+    /// # Errors
+    /// A row with another number of numbers, numbers that are not finite, a quaternion of zeros.
+    pub fn poses(numbers: &[f64], task: Task) -> Result<Self> {
+        let columns = Self::pose_columns(task).len();
+        if !numbers.len().is_multiple_of(columns) {
+            return Err(Error::InvalidOption {
+                option: "poses",
+                value: format!("{} numbers", numbers.len()),
+                reason: format!("a row has {columns}: {}", Self::pose_columns(task).join(", ")),
+            });
+        }
+        let pose = |(row, numbers): (usize, &[f64])| {
+            Error::check_finite(&format!("poses, row {row}"), numbers)?;
+            let translation = Vec3::new(numbers[0], numbers[1], numbers[2]);
+            let rotation = match numbers[3..] {
+                [w, x, y, z] => {
+                    Quaternion { w, x, y, z }.rotation().map_err(|_| Error::InvalidOption {
+                        option: "poses",
+                        value: format!("row {row}: quaternion {w}, {x}, {y}, {z}"),
+                        reason: "its length must not be zero".to_owned(),
+                    })?
+                }
+                _ => Rotation::IDENTITY,
+            };
+            Ok(Pose { rotation, translation })
+        };
+        let targets = numbers.chunks_exact(columns).enumerate().map(pose).collect::<Result<_>>()?;
+        Ok(Self::Poses { targets, task })
+    }
 }
 
 /// A source for a mechanism, checked.
@@ -74,20 +127,19 @@ enum Kind {
     },
     Given(Vec<f64>),
     Closed(ClosedSamples),
+    Poses(Box<PoseSolutions>),
     /// Points have no configurations of their own.
     Voxels,
 }
 
 impl Configurations {
-    pub(super) fn new(mechanism: &Mechanism, source: &Source) -> Result<Self> {
+    /// Of a source; frame and characteristic length (m) are those of poses.
+    pub(super) fn new(
+        mechanism: &Mechanism,
+        source: &Source,
+        place: (EndEffector, f64),
+    ) -> Result<Self> {
         let n = mechanism.n();
-        if n == 0 {
-            return Err(Error::Model {
-                model: mechanism.name().to_owned(),
-                culprit: String::new(),
-                message: "it has no coordinates to sweep".to_owned(),
-            });
-        }
         let free = |option: &'static str| match mechanism.is_closed() {
             false => Ok(()),
             true => Err(Error::InvalidOption {
@@ -120,6 +172,10 @@ impl Configurations {
                 mechanism.check_rows("configurations", q)?;
                 (rows as u64, Kind::Given(q.clone()))
             }
+            Source::Poses { targets, task } => {
+                let poses = PoseSolutions::new(mechanism, place, targets, *task)?;
+                (poses.rows(), Kind::Poses(Box::new(poses)))
+            }
             Source::Voxels(grid) => {
                 free("reach")?;
                 (Voxels::new(mechanism, grid)?.rows(), Kind::Voxels)
@@ -128,12 +184,18 @@ impl Configurations {
         Ok(Self { rows, n, kind })
     }
 
-    /// Those of `rows` into `out`. Samples of a closed chain that have no configuration have home, and
-    /// are returned.
+    /// True for poses, which may have none.
+    pub(super) const fn of_poses(&self) -> bool {
+        matches!(self.kind, Kind::Poses(_))
+    }
+
+    /// Those of `rows` into `out`. Samples of a closed chain and poses that have no configuration have
+    /// home, and are returned.
     pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Vec<usize> {
         let n = self.n;
         match &self.kind {
             Kind::Voxels => {}
+            Kind::Poses(poses) => return poses.write(rows, out),
             Kind::Closed(samples) => return samples.write(rows, out),
             Kind::Given(q) => {
                 let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX) * n;

@@ -428,6 +428,8 @@ fn sweeps(world: &mut World) {
         Source::Home,
         Source::Configurations(vec![]),
         Source::Configurations(vec![0.0]),
+        Source::Poses { targets: vec![], task: Task::POSE },
+        Source::Poses { targets: vec![Pose::IDENTITY], task: Task::POSITION },
         Source::Voxels(VoxelGrid::default()),
         Source::Voxels(VoxelGrid {
             axes: vec![Axis { name: "x".to_owned(), ..axis.clone() }],

@@ -16,6 +16,7 @@ mod own_columns;
 mod parts;
 mod payload;
 mod pinocchio;
+mod pose_files;
 mod quantities;
 mod sampling;
 mod shared_folder;

@@ -30,6 +30,8 @@ calls! {
     sweep::Sense::name;
     sweep::SharedFolder::open = |s: &'static Sweep, to: &'static Path, resume: bool| { SharedFolder::open(s, to, resume).is_ok() };
     sweep::SharedFolder::write_manifest = |s: &'static Sweep, to: &'static Path, parts: &'static [Option<Part>]| { SharedFolder::open(s, to, false).and_then(|folder| folder.write_manifest(s, parts)) };
+    sweep::Source::pose_columns;
+    sweep::Source::poses;
     sweep::Statistic::name;
     sweep::Sweep::check_memory;
     sweep::Sweep::collect = |s: &'static Sweep, threads: Option<NonZeroUsize>, go_on: bool| s.collect(threads, |_| go_on);
