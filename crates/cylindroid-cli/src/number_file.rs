@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use cylindroid::model::read_regular_file;
-use cylindroid::sweep::parquet_configurations;
+use cylindroid::sweep::{parquet_columns, parquet_configurations};
 use cylindroid::{Error, Matrix, Result};
 
 /// The largest file of numbers (bytes): 128 MiB, a million configurations of seven coordinates.
@@ -57,19 +57,38 @@ fn table(path: &Path) -> Result<Table> {
 }
 
 /// Configurations one after the other, of the coordinates `names`. Where columns are named, those
-/// of the coordinates are read, `name` or as in a motion of `move` `q.name`, and others are not;
+/// of the coordinates are read, as in a motion of `move` `q.name` or `name`, and others are not;
 /// otherwise, a row has a number for each.
 pub(crate) fn configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
     if path.extension().is_some_and(|e| e == "parquet") {
         return parquet_configurations(path, names);
     }
+    read_columns(path, names, |columns, name| {
+        let is_it = |c: &String| c.strip_prefix("q.") == Some(name);
+        let place = columns.iter().position(is_it);
+        place.or_else(|| columns.iter().position(|c| c == name))
+    })
+}
+
+/// The columns of these names, a row after the other; without names, a row has a number for each.
+pub(crate) fn columns(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    if path.extension().is_some_and(|e| e == "parquet") {
+        return parquet_columns(path, names);
+    }
+    read_columns(path, names, |columns, name| columns.iter().position(|c| c == name))
+}
+
+fn read_columns(
+    path: &Path,
+    names: &[&str],
+    find: impl Fn(&[String], &str) -> Option<usize>,
+) -> Result<Vec<f64>> {
     let table = table(path)?;
     let places: Vec<usize> = match &table.names {
         None => (0..names.len()).collect(),
         Some(columns) => {
             let place = |name: &&str| {
-                let is_it = |c: &String| c == name || c.strip_prefix("q.") == Some(name);
-                columns.iter().position(is_it).ok_or_else(|| {
+                find(columns, name).ok_or_else(|| {
                     let known = columns.join(", ");
                     cannot_read(path, &format!("no column '{name}' among {known}"))
                 })

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, AxisKinds, DesignSpace, ParameterRange, Part, Quantity, SharedFolder, Source, Summary,
-    Sweep, SweepOptions, Table, Values, VelocityMetric, VoxelGrid, WriteOptions,
+    Sweep, SweepOptions, Table, Values, VelocityMetric, VoxelGrid, WriteOptions, parquet_columns,
     parquet_configurations,
 };
 use cylindroid::{Pose, Vec3};
@@ -418,22 +418,23 @@ impl Chosen<'_, '_> {
         };
         let designs = self.designs || !split.parameters.is_empty();
         let grid = !split.coordinates.is_empty();
-        let has_others =
-            self.samples.is_some() || grid || self.configurations.is_some() || self.q.is_some();
+        let others = [
+            ("samples", self.samples.is_some()),
+            ("over", grid),
+            ("configurations", self.configurations.is_some()),
+            ("q", self.q.is_some()),
+        ];
+        let other = others.iter().find(|(_, is_given)| *is_given).map(|(name, _)| *name);
         if let Some(poses) = self.poses {
-            if has_others || self.reach.is_some() {
-                let reason = "poses have configurations of their own: leave out samples, over, q, \
-                              configurations and reach";
-                return Err(Failure::option("poses", "poses", reason));
+            if let Some(other) = other.or(self.reach.as_ref().map(|_| "reach")) {
+                let reason = "poses have configurations of their own; leave it out";
+                return Err(Failure::option(other, "given beside poses", reason));
             }
-            let task = match self.task {
-                Some(task) => task,
-                None => Task::named("pose", &robot.inner)?,
-            };
+            let task = self.task.map_or_else(|| Task::named("pose", &robot.inner), Ok)?;
             return Ok((pose_rows(&poses, task)?, split.parameters));
         }
         if let Some(reach) = self.reach {
-            if has_others {
+            if other.is_some() {
                 let reason = "points have no configurations: leave out samples, over and others";
                 return Err(Failure::option("reach", "a dict", reason));
             }
@@ -448,7 +449,7 @@ impl Chosen<'_, '_> {
             (None, false, None) if designs && rest.is_empty() => Source::Home,
             (None, false, None) if designs => Source::Configurations(rest),
             _ => {
-                let reason = "give one of samples, over and configurations";
+                let reason = "give one of samples, over, configurations, poses and reach";
                 return Err(Failure::option("samples", "", reason));
             }
         };
@@ -479,7 +480,7 @@ pub(crate) fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
 /// Poses of an array or of a file.
 fn pose_rows(given: &Bound<'_, PyAny>, task: Task) -> Result<Source> {
     if let Ok(path) = given.extract::<PathBuf>() {
-        let numbers = parquet_configurations(&path, Source::pose_columns(task))?;
+        let numbers = parquet_columns(&path, Source::pose_columns(task))?;
         return Ok(Source::poses(&numbers, task)?);
     }
     let poses: Numbers<'_> = entry("poses", given)?;

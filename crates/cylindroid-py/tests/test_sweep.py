@@ -240,10 +240,13 @@ def test_poses(tmp_path):
     with ThreadPoolExecutor(2) as workers:
         again = cy.sweep(robot, poses=poses, quantities=[], engine=workers)
     assert np.array_equal(again["reached"], found["reached"])
-    for options, told in [({"samples": 3}, "poses have configurations"),
-                          ({"reach": {"x": (0, 1, 2)}}, "poses have configurations")]:
-        with pytest.raises(cy.InvalidOptionError, match=told):
-            cy.sweep(robot, poses=poses, **options)
+    for name, value in [("samples", 3), ("reach", {"x": (0, 1, 2)}), ("q", robot.home)]:
+        with pytest.raises(cy.InvalidOptionError, match=f"{name} = given beside poses"):
+            cy.sweep(robot, poses=poses, **{name: value})
+    pointing = cy.sweep(youbot, poses=there, task="pointing", quantities=["limit_distance"])
+    assert pointing["reached"] == [1]
+    with pytest.raises(cy.InvalidOptionError, match="world axes"):
+        cy.sweep(youbot, poses=there, task="pointing", quantities=["yoshikawa"])
     with pytest.raises(cy.InvalidOptionError, match="poses are an array"):
         cy.sweep(robot, poses=np.eye(4))
     with pytest.raises(cy.CylindroidError, match="poses"):

@@ -26,7 +26,8 @@ numbers.
 
 --poses asks inverse kinematics for a configuration at each pose of a file, from home: --task names the \
 components that count. Rows have the configuration and reached, 1 or 0; those that are not reached have \
-no other numbers.
+NaN, counts of 0 and empty names, which statistics leave out. Positions are reached within 1e-6 of the \
+reach of the model, see `info`.
 
 --reach asks inverse kinematics at the points of a grid: of --directions that approach from all sides, \
 each with --rolls about it, it finds those that the tool reaches within the limits. Rows have their \
@@ -138,8 +139,9 @@ pub(crate) struct SweepArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
-    /// Components of the twist that measures and those of the Jacobian see, and of --poses: pose, position, orientation,
-    /// or a list of x,y,z,rx,ry,rz, in world axes [default: pose]
+    /// The components that count, of the twist for measures and those of the Jacobian, of the pose for
+    /// --poses: pose, position, orientation, or a list of x,y,z,rx,ry,rz, in world axes; of poses
+    /// without measures also pointing [default: pose]
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Option<String>,
 
@@ -165,7 +167,7 @@ pub(crate) struct SweepArgs {
     pub(crate) resume: bool,
 
     /// Rows of a file: the unit of work, which each thread has once in memory [default: 65536,
-    /// of designs 1024, of --reach 64]
+    /// of designs 1024, of --poses 128, of --reach 64]
     #[arg(long, value_name = "N", requires = "out", allow_hyphen_values = true)]
     pub(crate) part_rows: Option<Count>,
 

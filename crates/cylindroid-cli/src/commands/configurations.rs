@@ -106,7 +106,7 @@ impl Chosen<'_> {
         }
         if let Some((path, task)) = self.poses {
             let task = Task::named(task.unwrap_or("pose"), robot)?;
-            let numbers = number_file::configurations(path, Source::pose_columns(task))?;
+            let numbers = number_file::columns(path, Source::pose_columns(task))?;
             return Source::poses(&numbers, task);
         }
         if let Some(path) = self.configurations {

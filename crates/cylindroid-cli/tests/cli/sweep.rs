@@ -115,6 +115,10 @@ fn poses_of_files() {
     assert_eq!(column(&of(&places, &["--task", "position"]), "reached")["mean"], 1.0);
     let message = refused(&["sweep", "panda", "--poses", &places]);
     assert!(message.contains("line 1 has 3 numbers, not 7 (x, y, z, qw"), "{message}");
+    // The motion of a robot with sliders x, y, z: the columns of the tool.
+    let motion = at("motion.csv");
+    fs::write(&motion, "q.x,q.y,q.z,x,y,z\n9,9,9,0.4,0,0.4\n").unwrap();
+    assert_eq!(column(&of(&motion, &["--task", "position"]), "reached")["mean"], 1.0);
     let both = refused(&["sweep", "panda", "--poses", &places, "--samples", "3"]);
     assert!(both.contains("--samples"), "{both}");
     let axis = ["sweep", "panda", "--poses", &places, "--over", "panda_joint1=0:1:2"];

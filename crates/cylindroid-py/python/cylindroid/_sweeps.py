@@ -122,7 +122,8 @@ def sweep(
         `frame_from_tool`, a tool point fixed to the frame.
     task : str, optional
         The components that measures and those of the Jacobian see, and those of `poses` that count, world
-        axes: 'pose', 'position', 'orientation', or some of 'x,y,z,rx,ry,rz'. Default: 'pose'.
+        axes: 'pose', 'position', 'orientation', or some of 'x,y,z,rx,ry,rz'; of poses without
+        measures also 'pointing'. Default: 'pose'.
     metric : str
         Of 'yoshikawa' and 'measures': 'unit', 'length' or 'limits', as for `manipulability`.
     length : float, optional
@@ -164,8 +165,8 @@ def sweep(
     reach_from : array_like, (4, 4), optional
         Placement of the axes of `reach` in the world. Default: the world.
     poses : array_like, (N, 4, 4), or path of a Parquet file, optional
-        Poses `world_from_frame` that inverse kinematics reaches from home, in the components of
-        `task`; a file has the columns 'x', 'y', 'z' [m] and, where rotations count, the quaternion
+        Poses `world_from_tool` that inverse kinematics reaches from home, in the components of `task`,
+        positions within 1e-6 of the reach of the mechanism; a file has the columns 'x', 'y', 'z' [m] and, where rotations count, the quaternion
         'qw', 'qx', 'qy', 'qz'.
 
     Returns
@@ -176,8 +177,8 @@ def sweep(
         cannot be loaded with its values has 'design_valid' 0 and NaN. Of a capability map 'x', 'y',
         'z', 'directions' and 'orientations' that are reached, 'reachability' and
         'orientation_share', their shares, and 'best_' with the name of each quantity, NaN without a
-        solution. Of poses 'reached', 1 or 0, after the coordinates; those that are not reached have NaN
-        in other columns. With `out` the summary of the folder.
+        solution. Of poses 'reached', 1 or 0, after the coordinates; those that are not reached have NaN,
+        counts of 0 and empty names. With `out` the summary of the folder.
 
     Raises
     ------

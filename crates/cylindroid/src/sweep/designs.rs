@@ -249,7 +249,7 @@ impl Designs {
                 frame => own.frame(&nominal.frame_of(frame).name)?,
             };
         }
-        let configurations = Configurations::new(&own, &options.source, options.place(&own)?)?;
+        let configurations = Configurations::new(&own, &options.source, options.place(&own)?.0)?;
         Ok((configurations, Evaluator::new(&own, &options)?))
     }
 

@@ -73,7 +73,10 @@ impl Evaluator {
                 ),
             });
         }
-        let task = components(mechanism, options.task)?;
+        // Of poses, the task is also that of inverse kinematics, which takes others.
+        let sees = options.quantities.iter().any(|q| q.sees_task());
+        let of_poses = matches!(options.source, Source::Poses { .. });
+        let task = components(mechanism, options.task.filter(|_| sees || !of_poses))?;
         let factor = |i: &usize| if *i < 3 { 1.0 / length } else { 1.0 };
         let rows: Vec<(usize, f64)> = task.iter().map(|i| (*i, factor(i))).collect();
         let scaled = SingularValues::new(rows.clone(), vec![1.0; mechanism.n()]);
@@ -140,7 +143,7 @@ impl Evaluator {
             let end = rows.end.min(start + BLOCK as u64);
             let count = usize::try_from(end - start).unwrap_or(0);
             scratch.count = count;
-            let absent = from.write(start..end, &mut scratch.q[..count * n]);
+            let absent = from.write(start..end, &mut scratch.q[..count * n])?;
             let mut columns = out.iter_mut();
             if let Some(Values::Counts(index)) = columns.next() {
                 index.extend(start..end);

@@ -11,7 +11,7 @@ use super::options::{PART_ROWS, SweepOptions};
 use super::own_columns::{self, OwnColumn};
 use super::quantity::Quantity;
 use super::recipe::Recipe;
-use super::source::{Configurations, Source};
+use super::source::{Configurations, REACHED, Source};
 use super::table::{Column, Table, Values};
 use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
@@ -47,13 +47,16 @@ impl Sweep {
     /// configurations.
     pub const VOXEL_PART_ROWS: u64 = 1 << 6;
 
-    /// Rows of a part that take a few seconds: of samples and files, of designs, poses and samples of
-    /// closed chains, of capability maps.
+    /// Poses of a part by default: one that is not reached takes up to a tenth of a second.
+    pub const POSE_PART_ROWS: u64 = 1 << 7;
+
+    /// Rows of a part that take a few seconds: of samples and files, of designs and samples of closed
+    /// chains, of poses, of capability maps.
     #[must_use]
     pub fn usual_part_rows(mechanism: &Mechanism, source: &Source, has_designs: bool) -> u64 {
         match source {
             Source::Voxels(_) => Self::VOXEL_PART_ROWS,
-            Source::Poses { .. } => Self::DESIGN_PART_ROWS,
+            Source::Poses { .. } => Self::POSE_PART_ROWS,
             Source::Samples { .. } if mechanism.is_closed() => Self::DESIGN_PART_ROWS,
             _ if has_designs => Self::DESIGN_PART_ROWS,
             _ => Self::PART_ROWS,
@@ -81,8 +84,8 @@ impl Sweep {
                 return refuse("quantities", quantity.name().to_owned(), "it is named twice");
             }
         }
-        let place = options.place(mechanism)?;
-        let configurations = Configurations::new(mechanism, &options.source, place)?;
+        let (end_effector, _) = options.place(mechanism)?;
+        let configurations = Configurations::new(mechanism, &options.source, end_effector)?;
         check_parts(configurations.rows, options.part_rows)?;
         let evaluator = Evaluator::new(mechanism, &options)?;
         let mut columns = vec![Column::count("index", "place in the sweep, from 0")];
@@ -96,7 +99,10 @@ impl Sweep {
             let unit = |c: &Coordinate| Column::number(&c.name, c.kind.unit(), "coordinate");
             columns.extend(mechanism.coordinates().iter().map(unit));
             if configurations.of_poses() {
-                columns.push(Column::count("reached", "1 if a configuration reaches the pose"));
+                columns.push(Column::count(
+                    REACHED,
+                    "1 if a configuration reaches the pose, 0 if none is found",
+                ));
             }
             for quantity in &options.quantities {
                 columns.extend(quantity.columns(mechanism, evaluator.values()));

@@ -76,7 +76,7 @@ pub(super) fn run(
     }
     let count = usize::try_from(rows.end - rows.start).unwrap_or(0);
     let mut q = vec![0.0; count * from.n];
-    let absent = from.write(rows.clone(), &mut q);
+    let absent = from.write(rows.clone(), &mut q)?;
     let of = |column: &OwnColumn| {
         let failed = |reason: String| {
             let last = rows.end.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! Configurations of a Parquet file, its columns matched by the names of the coordinates.
+//! Columns of a Parquet file by their names: configurations, poses, quantities.
 //!
 //! Valid    columns of numbers without gaps, uncompressed or by Snappy; other columns are ignored
 //! Why so   column by column into rows: Parquet's own rows take ten times as long
@@ -19,12 +19,32 @@ type Result<T, E = Error> = std::result::Result<T, E>;
 /// Numbers at most: 4 GiB.
 const MOST: usize = 1 << 29;
 
-/// The columns of these names (or `q.` and the name, as in the motions of `move`), a row after the
-/// other.
+/// The columns of these coordinates, a row after the other: `q.` and the name, as in the motions of
+/// `move`, or the name.
+///
+/// # Errors
+/// As [`parquet_columns`].
+pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    read_columns(path, names, |columns, name| {
+        let is_it = |c: &String| c.strip_prefix("q.") == Some(name);
+        let place = columns.iter().position(is_it);
+        place.or_else(|| columns.iter().position(|c| c == name))
+    })
+}
+
+/// The columns of these names, a row after the other.
 ///
 /// # Errors
 /// A file that cannot be read, a missing column, an entry that is no number, too many rows.
-pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+pub fn parquet_columns(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    read_columns(path, names, |columns, name| columns.iter().position(|c| c == name))
+}
+
+fn read_columns(
+    path: &Path,
+    names: &[&str],
+    find: impl Fn(&[String], &str) -> Option<usize>,
+) -> Result<Vec<f64>> {
     let refuse = |message: String| Error::Io { path: path.to_owned(), action: "read", message };
     let because = |error: ParquetError| {
         refuse(format!("{error}; files without compression or with Snappy's can be read"))
@@ -35,10 +55,7 @@ pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
         metadata.schema_descr().columns().iter().map(|c| c.path().string()).collect();
     let mut places = Vec::with_capacity(names.len());
     for name in names {
-        let is_it = |c: &String| c == name || c.strip_prefix("q.") == Some(name);
-        let place = columns
-            .iter()
-            .position(is_it)
+        let place = find(&columns, name)
             .ok_or_else(|| refuse(format!("no column '{name}' among {}", columns.join(", "))))?;
         places.push(place);
     }

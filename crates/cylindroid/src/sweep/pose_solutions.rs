@@ -2,7 +2,7 @@
 //!
 //! Method   of pose i the solution of `ik::solve` from home: the same restarts for each, so that a row
 //!          depends on its own pose alone
-//! Units    m, rad; tolerances of inverse kinematics, that of positions times the characteristic length
+//! Units    m, rad; tolerances of inverse kinematics, that of positions times the reach of the mechanism
 //! Valid    any mechanism; of closed chains one frame, its orientation whole, without one component or
 //!          not at all. What is not reached is proven for exact closed forms and targets beyond the
 //!          length of the chain, otherwise not found
@@ -13,12 +13,12 @@
 use std::ops::Range;
 
 use crate::error::{Error, Result};
-use crate::ik::{Goal, IkOptions, Solution, Solver, solve};
+use crate::ik::{Budget, Goal, IkOptions, Solution, Solver, solve};
 use crate::kinematics::EndEffector;
 use crate::model::Mechanism;
 use crate::spatial::Pose;
 use crate::task::Task;
-use crate::tolerance::IK_POSITION;
+use crate::tolerance::{IK_POSITION, MAX_MAGNITUDE};
 
 /// Poses, and what is needed to reach them.
 #[derive(Debug, Clone)]
@@ -35,16 +35,19 @@ pub(super) struct PoseSolutions {
 impl PoseSolutions {
     pub(super) fn new(
         mechanism: &Mechanism,
-        (end_effector, length): (EndEffector, f64),
+        end_effector: EndEffector,
         targets: &[Pose],
         task: Task,
     ) -> Result<Self> {
-        if let Some(row) = targets.iter().position(|pose| !pose.is_finite()) {
-            return Err(Error::NotFinite { what: format!("poses, row {row}"), value: f64::NAN });
+        for (row, pose) in targets.iter().enumerate() {
+            let what = format!("poses, row {row} from 0");
+            if !pose.is_finite() {
+                return Err(Error::NotFinite { what, value: f64::NAN });
+            }
+            Error::check_within(&what, &pose.translation.to_array(), MAX_MAGNITUDE)?;
         }
         let options = IkOptions {
-            position_tolerance: IK_POSITION * length,
-            length: Some(length),
+            position_tolerance: IK_POSITION * mechanism.reach(),
             ..IkOptions::default()
         };
         let all = Self {
@@ -55,10 +58,11 @@ impl PoseSolutions {
             options,
             solver: None,
         };
-        let goal = all.goal(mechanism.state(mechanism.home())?.pose_of(end_effector.frame));
+        let goal = all.goal(mechanism.state(mechanism.home())?.pose_of(end_effector));
         if mechanism.is_closed() {
             // Tasks that closed chains do not have are refused before the first row.
-            solve(mechanism, &goal, &all.options)?;
+            let budget = Budget { iterations: 1, ..all.options.budget };
+            solve(mechanism, &goal, &IkOptions { budget, ..all.options.clone() })?;
             return Ok(all);
         }
         let solver = Some(Solver::new(mechanism, &goal, &all.options)?);
@@ -74,7 +78,7 @@ impl PoseSolutions {
     }
 
     /// Those of `rows` into `out`; rows whose pose is not reached have home, and are returned.
-    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Vec<usize> {
+    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Result<Vec<usize>> {
         let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX);
         let targets = &self.targets[at(rows.start)..at(rows.end)];
         let mut solver = self.solver.clone();
@@ -83,17 +87,17 @@ impl PoseSolutions {
         for (row, (q, target)) in configurations.zip(targets).enumerate() {
             let goal = self.goal(*target);
             let found = match &mut solver {
-                Some(solver) => solver.solve(&goal),
-                None => solve(&self.mechanism, &goal, &self.options),
+                Some(solver) => solver.solve(&goal)?,
+                None => solve(&self.mechanism, &goal, &self.options)?,
             };
             match found {
-                Ok(Solution { success: true, q: solution, .. }) => q.copy_from_slice(&solution),
+                Solution { success: true, q: solution, .. } => q.copy_from_slice(&solution),
                 _ => {
                     q.copy_from_slice(self.mechanism.home());
                     absent.push(row);
                 }
             }
         }
-        absent
+        Ok(absent)
     }
 }

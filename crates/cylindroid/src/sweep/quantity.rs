@@ -114,6 +114,18 @@ impl Quantity {
         found.ok_or_else(|| Error::unknown("quantity", name, Self::ALL.map(Self::name)))
     }
 
+    /// True if the task restricts it.
+    pub(super) const fn sees_task(self) -> bool {
+        matches!(
+            self,
+            Self::SingularValues
+                | Self::SmallestSingularValue
+                | Self::Condition
+                | Self::Yoshikawa
+                | Self::Measures
+        )
+    }
+
     /// True if loops do not invalidate it: the others are of the Jacobian of the spanning tree.
     pub(super) const fn has_loops(self) -> bool {
         matches!(self, Self::Pose | Self::LimitDistance | Self::Payload | Self::Measures)

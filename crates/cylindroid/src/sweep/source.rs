@@ -25,6 +25,9 @@ use crate::spatial::{Pose, Quaternion, Rotation, Vec3};
 use crate::task::Task;
 use crate::tolerance::MAX_MAGNITUDE;
 
+/// The column of poses that are reached.
+pub(super) const REACHED: &str = "reached";
+
 /// The configurations of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -50,7 +53,8 @@ pub enum Source {
     /// These, one after the other, n numbers each (rad or m).
     Configurations(Vec<f64>),
     /// Poses of the tool, in world axes: of each a configuration that reaches it, by inverse kinematics
-    /// from home, and whether there is one (`reached`); rows without one have no other numbers.
+    /// from home, and whether there is one (`reached`); rows without one have NaN, counts of 0
+    /// and empty names.
     Poses {
         /// One for each row.
         targets: Vec<Pose>,
@@ -75,7 +79,8 @@ impl Source {
     /// any length but zero.
     ///
     /// # Errors
-    /// A row with another number of numbers, numbers that are not finite, a quaternion of zeros.
+    /// A row with another number of numbers, numbers that are not finite, a quaternion without a
+    /// direction.
     pub fn poses(numbers: &[f64], task: Task) -> Result<Self> {
         let columns = Self::pose_columns(task).len();
         if !numbers.len().is_multiple_of(columns) {
@@ -86,14 +91,16 @@ impl Source {
             });
         }
         let pose = |(row, numbers): (usize, &[f64])| {
-            Error::check_finite(&format!("poses, row {row}"), numbers)?;
+            for (x, column) in numbers.iter().zip(Self::pose_columns(task)) {
+                Error::check_finite(&format!("poses, row {row} from 0, {column}"), &[*x])?;
+            }
             let translation = Vec3::new(numbers[0], numbers[1], numbers[2]);
             let rotation = match numbers[3..] {
                 [w, x, y, z] => {
                     Quaternion { w, x, y, z }.rotation().map_err(|_| Error::InvalidOption {
                         option: "poses",
-                        value: format!("row {row}: quaternion {w}, {x}, {y}, {z}"),
-                        reason: "its length must not be zero".to_owned(),
+                        value: format!("row {row} from 0, quaternion {w}, {x}, {y}, {z}"),
+                        reason: "its length must be finite and not zero".to_owned(),
                     })?
                 }
                 _ => Rotation::IDENTITY,
@@ -133,11 +140,11 @@ enum Kind {
 }
 
 impl Configurations {
-    /// Of a source; frame and characteristic length (m) are those of poses.
+    /// Of a source; the end effector is that of poses.
     pub(super) fn new(
         mechanism: &Mechanism,
         source: &Source,
-        place: (EndEffector, f64),
+        end_effector: EndEffector,
     ) -> Result<Self> {
         let n = mechanism.n();
         let free = |option: &'static str| match mechanism.is_closed() {
@@ -173,7 +180,7 @@ impl Configurations {
                 (rows as u64, Kind::Given(q.clone()))
             }
             Source::Poses { targets, task } => {
-                let poses = PoseSolutions::new(mechanism, place, targets, *task)?;
+                let poses = PoseSolutions::new(mechanism, end_effector, targets, *task)?;
                 (poses.rows(), Kind::Poses(Box::new(poses)))
             }
             Source::Voxels(grid) => {
@@ -191,12 +198,12 @@ impl Configurations {
 
     /// Those of `rows` into `out`. Samples of a closed chain and poses that have no configuration have
     /// home, and are returned.
-    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Vec<usize> {
+    pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Result<Vec<usize>> {
         let n = self.n;
         match &self.kind {
             Kind::Voxels => {}
             Kind::Poses(poses) => return poses.write(rows, out),
-            Kind::Closed(samples) => return samples.write(rows, out),
+            Kind::Closed(samples) => return Ok(samples.write(rows, out)),
             Kind::Given(q) => {
                 let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX) * n;
                 out.copy_from_slice(&q[at(rows.start)..at(rows.end)]);
@@ -225,7 +232,7 @@ impl Configurations {
                 }
             }
         }
-        Vec::new()
+        Ok(Vec::new())
     }
 }
 

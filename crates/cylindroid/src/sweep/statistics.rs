@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use super::job::Sweep;
 use super::parts::run_parts;
+use super::source::REACHED;
 use super::table::{Table, Values};
 use super::{Column, Progress};
 use crate::error::Result;
@@ -40,10 +41,6 @@ enum Sum {
 }
 
 impl Sum {
-    fn of(values: &Values) -> Self {
-        Self::of_rows(values, 0..usize::MAX)
-    }
-
     /// Of those of these rows that there are.
     fn of_rows(values: &Values, rows: Range<usize>) -> Self {
         let of = |length: usize| rows.start.min(length)..rows.end.min(length);
@@ -56,6 +53,16 @@ impl Sum {
                 own
             }
         }
+    }
+
+    /// Of those of these rows that are reached.
+    fn of_reached(counts: &[u64], reached: &[u64], rows: Range<usize>) -> Self {
+        let rows = rows.start.min(counts.len())..rows.end.min(counts.len());
+        let own = counts[rows.clone()].iter().zip(&reached[rows]);
+        let numbers: Vec<f64> = own
+            .map(|(count, reached)| if *reached == 0 { f64::NAN } else { *count as f64 })
+            .collect();
+        Self::numbers(&numbers, |x| x)
     }
 
     /// In lanes, each of which sums every eighth number: a sum does not wait for the one before.
@@ -151,7 +158,7 @@ impl Sweep {
         let progress = std::cell::Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
         let work = |values: &mut Vec<Values>, part: usize| {
             self.fill(self.rows_of(part), values)?;
-            Ok(values.iter().skip(1).map(Sum::of).collect::<Vec<_>>())
+            Ok(self.sums(values, 0..usize::MAX))
         };
         let finished = |part: usize, sums| {
             let rows = self.rows_of(part);
@@ -176,9 +183,22 @@ impl Sweep {
             let rows = self.rows_of(part);
             let at = |row: u64| usize::try_from(row).unwrap_or(usize::MAX);
             let rows = at(rows.start)..at(rows.end);
-            table.values.iter().skip(1).map(|all| Sum::of_rows(all, rows.clone())).collect()
+            self.sums(&table.values, rows)
         };
         self.of_parts((0..self.parts()).map(part).collect())
+    }
+
+    /// Of these rows of all columns but `index`. Poses that are not reached have no counts.
+    fn sums(&self, values: &[Values], rows: Range<usize>) -> Vec<Sum> {
+        let is_it = |c: &Column| self.configurations.of_poses() && c.name == REACHED;
+        let place = self.columns.iter().position(is_it).unwrap_or(usize::MAX);
+        let of = |(i, all): (usize, &Values)| match (all, values.get(place)) {
+            (Values::Counts(counts), Some(Values::Counts(reached))) if i > place => {
+                Sum::of_reached(counts, reached, rows.clone())
+            }
+            _ => Sum::of_rows(all, rows.clone()),
+        };
+        values.iter().enumerate().skip(1).map(of).collect()
     }
 
     fn of_parts(&self, parts: Vec<Vec<Sum>>) -> Vec<(Column, Statistics)> {

@@ -4,9 +4,12 @@ use std::path::Path;
 
 use cylindroid::control::Task;
 use cylindroid::ik::{Goal, IkOptions, solve};
+use cylindroid::kinematics::EndEffector;
 use cylindroid::spatial::Quaternion;
-use cylindroid::sweep::{Axis, DesignSpace, Quantity, Source, Sweep, SweepOptions, Values};
-use cylindroid::{Mechanism, ParametricModel, Pose, Vec3};
+use cylindroid::sweep::{
+    Axis, DesignSpace, Quantity, Source, Statistics, Sweep, SweepOptions, Values, WriteOptions,
+};
+use cylindroid::{Mechanism, ParametricModel, Pose, Rotation, Vec3};
 
 use crate::{bits, configurations, of};
 
@@ -69,11 +72,8 @@ fn poses_of_samples_are_reached() {
                 assert!(error.angular.norm() < TOLERANCE, "{name}, row {row}");
             }
             let frame = if robot.is_closed() { robot.reference() } else { robot.tool() };
-            let options = IkOptions {
-                length: Some(robot.reach()),
-                position_tolerance: TOLERANCE * robot.reach(),
-                ..IkOptions::default()
-            };
+            let options =
+                IkOptions { position_tolerance: TOLERANCE * robot.reach(), ..IkOptions::default() };
             let single = solve(&robot, &[Goal::frame(frame, task, target)], &options).unwrap();
             assert_eq!(single.q, *q, "{name}, row {row}");
         }
@@ -121,8 +121,8 @@ fn rows_of_numbers_are_poses() {
     assert_eq!(targets, [Pose::from_translation(Vec3::new(1.0, 2.0, 3.0))]);
     for (numbers, told) in [
         (vec![0.0; 6], "a row has 7"),
-        (vec![0.0; 7], "must not be zero"),
-        ([vec![0.0; 6], vec![1.0], vec![f64::NAN; 7]].concat(), "row 1"),
+        (vec![0.0; 7], "must be finite and not zero"),
+        ([vec![0.0; 6], vec![1.0], vec![0.0; 2], vec![f64::NAN; 5]].concat(), "row 1 from 0, z"),
     ] {
         let error = Source::poses(&numbers, Task::POSE).unwrap_err().to_string();
         assert!(error.contains(told), "{error}");
@@ -140,6 +140,9 @@ fn what_inverse_kinematics_does_not_take_is_refused() {
     let error =
         new("panda", Source::Poses { targets: vec![Pose::IDENTITY, nan], task: Task::POSE });
     assert!(error.unwrap_err().to_string().contains("row 1"));
+    let far = Pose { translation: Vec3::new(1e300, 0.0, 0.0), ..nan };
+    let error = new("panda", Source::Poses { targets: vec![far], task: Task::POSE });
+    assert!(error.unwrap_err().to_string().contains("row 0"));
     // Of an orientation of a platform one component alone.
     let mut task = Task::POSITION;
     task.components[3] = true;
@@ -168,4 +171,78 @@ fn designs_reach_other_poses() {
     let sweep = Sweep::of_designs(&model, DesignSpace::Grid(over), options).unwrap();
     let table = sweep.table(0..4).unwrap();
     assert_eq!(counts(table.column("reached"), "reached"), [1, 0, 1, 1]);
+}
+
+/// A tool point is reached, of arms and of closed chains; the direction of the tool alone, for an arm
+/// of five joints.
+#[test]
+fn tools_and_directions_are_reached() {
+    for (name, task) in [("ur5e", Task::POSE), ("stewart", Task::POSE)] {
+        let robot = cylindroid::load(name).unwrap();
+        let frame = if robot.is_closed() { robot.reference() } else { robot.tool() };
+        let frame_from_tool = Pose::from_translation(Vec3::new(0.1, 0.2, 0.3));
+        let end_effector = EndEffector { frame, frame_from_tool };
+        let target = pose(&robot, robot.home()) * frame_from_tool;
+        let options = SweepOptions {
+            source: Source::Poses { targets: vec![target], task },
+            quantities: vec![Quantity::Pose],
+            end_effector: Some(end_effector),
+            ..Default::default()
+        };
+        let table = Sweep::new(&robot, options).unwrap().table(0..1).unwrap();
+        assert_eq!(counts(table.column("reached"), name), [1], "{name}");
+        let q = &configurations(&robot, &table)[0];
+        let found = pose(&robot, q) * frame_from_tool;
+        let error = found.error_to(target);
+        assert!(error.linear.norm() + error.angular.norm() < 1e-5, "{name}");
+        let x = table.numbers("x").unwrap()[0];
+        assert!((x - target.translation.x).abs() < 1e-5, "{name}");
+    }
+    let robot = cylindroid::load("youbot").unwrap();
+    let mut q = robot.home().to_vec();
+    q.iter_mut().for_each(|x| *x += 0.1);
+    let turned = Rotation::about(Vec3::Z, 1.0).unwrap();
+    let target = pose(&robot, &q) * Pose::from_rotation(turned);
+    let of = |task: Task, quantities: &[Quantity]| {
+        let source = Source::Poses { targets: vec![target], task };
+        let quantities = quantities.to_vec();
+        let options = SweepOptions { source, quantities, task: Some(task), ..Default::default() };
+        Sweep::new(&robot, options).map(|sweep| sweep.table(0..1).unwrap())
+    };
+    let pointing = of(Task::POINTING, &[Quantity::LimitDistance]).unwrap();
+    assert_eq!(counts(pointing.column("reached"), "pointing"), [1]);
+    assert!(of(Task::POINTING, &[Quantity::Condition]).is_err());
+    assert!(of(Task::POSE, &[Quantity::Condition]).is_ok());
+}
+
+/// Counts of poses that are not reached take no part in statistics, and folders know their poses.
+#[test]
+fn rows_without_a_configuration_have_no_statistics() {
+    let robot = cylindroid::load("ur5e").unwrap();
+    let home = pose(&robot, robot.home());
+    let far = Pose::from_translation(Vec3::X * 9.0);
+    let source = |targets: Vec<Pose>| Source::Poses { targets, task: Task::POSE };
+    let sweep =
+        of(&robot, source(vec![far, home, far]), &[Quantity::Measures, Quantity::GibsonHunt]);
+    let table = sweep.table(0..3).unwrap();
+    for all in [sweep.statistics(None, |_| true).unwrap().unwrap(), sweep.statistics_of(&table)] {
+        for (column, statistics) in all {
+            let Statistics::Numbers { smallest, largest, not_finite, .. } = statistics else {
+                continue;
+            };
+            if column.name == "reached" {
+                assert_eq!((smallest, largest, not_finite), (0.0, 1.0, 0));
+            } else {
+                assert!(not_finite >= 2 && !(smallest < largest), "{}", column.name);
+            }
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    sweep.write(folder.path(), &WriteOptions::default(), |_| true).unwrap();
+    let resume = WriteOptions { resume: true, ..WriteOptions::default() };
+    sweep.write(folder.path(), &resume, |_| true).unwrap();
+    let quantities = [Quantity::Measures, Quantity::GibsonHunt];
+    let other = of(&robot, source(vec![home, home, far]), &quantities);
+    let error = other.write(folder.path(), &resume, |_| true).unwrap_err().to_string();
+    assert!(error.contains("configurations.poses_checksum"), "{error}");
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use cylindroid::Result;
-use cylindroid::sweep::{Sweep, Table, parquet_configurations};
+use cylindroid::sweep::{Sweep, Table, parquet_columns};
 
 use crate::plot::sweep::Picture;
 
@@ -48,7 +48,7 @@ fn of_table(table: &Table, names: &[&str]) -> Vec<Vec<f64>> {
 fn of_folder(sweep: &Sweep, names: &[&str], folder: &Path) -> Result<Vec<Vec<f64>>> {
     let mut columns = vec![Vec::new(); names.len()];
     for part in 0..sweep.parts() {
-        let rows = parquet_configurations(&folder.join(Sweep::part_name(part)), names)?;
+        let rows = parquet_columns(&folder.join(Sweep::part_name(part)), names)?;
         for (i, column) in columns.iter_mut().enumerate() {
             column.extend(rows.iter().skip(i).step_by(names.len()));
         }

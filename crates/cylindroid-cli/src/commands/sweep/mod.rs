@@ -76,11 +76,16 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         bar.show(progress);
         !interrupt.came()
     };
-    // Rows that are drawn too are computed once, and those of a CSV file by all threads where they
-    // take long.
+    // Rows that are drawn too are computed once, and those that take long by all threads.
+    let is_slow = match &source {
+        Source::Voxels(_) | Source::Poses { .. } => true,
+        Source::Samples { .. } => robot.is_closed(),
+        _ => false,
+    };
     let is_folder = args.out.as_deref().is_some_and(|path| !is_csv(path));
     let is_drawn = picture.as_ref().is_some_and(|(picture, _)| picture.is_of_all());
-    let collected = !is_folder && (is_drawn || is_map && args.out.is_some());
+    let collected =
+        !is_folder && (is_drawn || is_slow && (args.out.is_some() || picture.is_some()));
     let table = match collected {
         true => match sweep.collect(args.threads, observe)? {
             Some(table) => Some(table),

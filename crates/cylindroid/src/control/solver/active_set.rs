@@ -141,9 +141,10 @@ pub(in crate::control) struct ActiveSet {
     candidate: Vec<f64>,
     /// The sign of the bound at which each row stood in the last solution; 0 if at none.
     last: Vec<f64>,
-    /// The point and the working rows to return to.
+    /// The point, the working rows and the uses to return to.
     before: Vec<f64>,
     held: Vec<Working>,
+    held_uses: Vec<Use>,
     /// Rounds since the start.
     #[cfg(test)]
     rounds: usize,
@@ -170,6 +171,7 @@ impl ActiveSet {
             last: vec![0.0; r],
             before: vec![0.0; n],
             held: Vec::with_capacity(n),
+            held_uses: vec![Use::Free; r],
             #[cfg(test)]
             rounds: 0,
         }

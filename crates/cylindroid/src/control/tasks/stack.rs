@@ -8,7 +8,7 @@
 //!          errors that limits leave, or of all of it beyond the range of the linearised tasks
 //! Valid    a level that higher levels fix in part cannot be scaled as a whole: its direction is
 //!          changed where a limit stops the rest
-//! Checked  tests/it/servo/tasks.rs, tests/it/servo/task_edges.rs
+//! Checked  tests in this file, tests/it/servo/tasks.rs, tests/it/servo/task_edges.rs
 
 use super::levels::{Member, Stack, USUAL_GAIN};
 use super::linear_range::LinearRange;
@@ -27,7 +27,8 @@ const WHOLE: f64 = 1e-9;
 /// Largest weight of the rows of a task beside those of a task that asks for more [-].
 const MOST_WEIGHT: f64 = 1e3;
 
-/// Parts of the error that bend a motion by less than a thousandth of the least damping [-].
+/// Scaled errors up to this bend nothing [-]: with weights and lengths of one a thousandth of the least
+/// damping.
 const STRAIGHT_WAY: f64 = 1e-3 * LEAST_DAMPING;
 
 /// Halvings of the interval of velocities by which distances give way: to a millionth.
@@ -166,10 +167,8 @@ impl TaskServo {
                     };
                     // What a task leaves out must not disturb one that asks for less.
                     let farthest = members.iter().map(|m| m.way).fold(0.0, f64::max);
-                    let weights = members.iter().map(|m| {
-                        let weight = (farthest / m.way).min(MOST_WEIGHT);
-                        (m.rows.clone(), if weight.is_nan() { 1.0 } else { weight })
-                    });
+                    let weights =
+                        members.iter().map(|m| (m.rows.clone(), weight_beside(m.way, farthest)));
                     let missing = self.set.reduce_target(whole, weak, error, weights);
                     *left_out = if size > 0.0 { missing / size } else { 0.0 };
                     linear.is_reduced = *left_out > 0.0;
@@ -250,6 +249,11 @@ impl TaskServo {
     }
 }
 
+/// The weight of a task that asks for `way` beside one that asks for most: 1 where none asks.
+fn weight_beside(way: f64, farthest: f64) -> f64 {
+    if farthest > 0.0 { (farthest / way).min(MOST_WEIGHT) } else { 1.0 }
+}
+
 /// The share of a target that is realised along it, from what is left of it.
 fn share(target: &[f64], left: &[f64]) -> f64 {
     let size = dot(target, target);
@@ -320,4 +324,18 @@ fn cause(
     };
     let kind = if sign > 0.0 { bound.upper_cause } else { bound.lower_cause };
     (StoppedBy::Limit { coordinate: row, kind }, kind == LimitKind::Position)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tasks at rest weigh more beside others, and nothing more where all of them rest.
+    #[test]
+    fn tasks_that_ask_for_less_weigh_more() {
+        let all = [(0.5, 1.0, 2.0), (1.0, 1.0, 1.0), (0.0, 1.0, MOST_WEIGHT), (0.0, 0.0, 1.0)];
+        for (way, farthest, weight) in all {
+            assert_eq!(weight_beside(way, farthest), weight, "{way} {farthest}");
+        }
+    }
 }

@@ -69,5 +69,6 @@ calls! {
     sweep::Zone::of;
     sweep::ZoneShape::name;
     sweep::ZoneShape::named;
+    sweep::parquet_columns;
     sweep::parquet_configurations;
 }

@@ -117,6 +117,9 @@ mod tests {
                 }
             }
             level.curvature = c.clone();
+            level.damp(1e-6, false);
+            let b = Matrix::from_fn(n, n, |i, j| level.stacked.rows[(2 + i, j)]);
+            let positive = &b.transpose() * &b;
             level.damp(1e-6, true);
             assert_eq!(level.is_curved, !bent.is_empty());
             if !level.is_curved {
@@ -128,6 +131,11 @@ mod tests {
             let (found, expected) = (&absolute * &absolute, &c * &c);
             for (x, e) in found.as_slice().iter().zip(expected.as_slice()) {
                 assert!((x - e).abs() < 1e-12, "{bent:?}: {x} {e}");
+            }
+            // P(C) = (C + |C|) / 2
+            let parts = positive.as_slice().iter().zip(c.as_slice()).zip(absolute.as_slice());
+            for ((p, c), a) in parts {
+                assert!((p - 0.5 * (c + a)).abs() < 1e-12, "{bent:?}: {p} {c} {a}");
             }
         }
     }

@@ -115,24 +115,20 @@ impl ActiveSet {
         self.keep_rows(level);
     }
 
-    /// Notes the point and the working rows.
+    /// Notes the point, the working rows and the uses of all rows.
     pub(in crate::control::solver) fn hold(&mut self) {
         self.before.copy_from_slice(&self.y);
         self.held.clear();
         self.held.extend_from_slice(&self.working);
+        self.held_uses.copy_from_slice(&self.uses);
     }
 
     /// Returns to what [`ActiveSet::hold`] noted in the same level.
     pub(in crate::control::solver) fn restore(&mut self) {
         self.y.copy_from_slice(&self.before);
-        for use_of_row in self.uses.iter_mut().filter(|u| **u != Use::Fixed) {
-            *use_of_row = Use::Free;
-        }
+        self.uses.copy_from_slice(&self.held_uses);
         self.working.clear();
-        for w in &self.held {
-            self.working.push(*w);
-            self.uses[w.row] = Use::Working;
-        }
+        self.working.extend_from_slice(&self.held);
         self.multipliers[..self.working.len()].fill(0.0);
         self.rebuild(0);
     }

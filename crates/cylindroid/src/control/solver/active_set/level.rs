@@ -114,9 +114,15 @@ impl Level {
         }
     }
 
+    /// Which remainders of columns count, where singular values of at least `least` do.
+    fn gap(&self, least: f64) -> RankGap {
+        RankGap { zero: ZERO * self.scale, regular: least }
+    }
+
     /// Eliminates the columns of the projected rows; false if singular values below `least` decide the
     /// rank.
     fn eliminate(&mut self, least: f64) -> bool {
+        let gap = self.gap(least);
         let Self { system, left, projected, moving, lower, .. } = self;
         // Working rows of single unknowns leave columns of zeros.
         moving.clear();
@@ -129,7 +135,6 @@ impl Level {
         }
         let n = moving.len();
         system.column_mut(n).copy_from_slice(&self.residual);
-        let gap = RankGap { zero: ZERO * self.scale, regular: least };
         left.eliminate_beside(system, n, 1, gap) && {
             // Of fewer columns: more of them only increase singular values.
             lower.load_transposed(system, left.rank());
@@ -144,6 +149,7 @@ impl Level {
         if !self.eliminate(least) {
             return false;
         }
+        let gap = self.gap(least);
         let Self { system, left, transposed, right, ordered, moving, .. } = self;
         let (n, rank) = (moving.len(), left.rank());
         x.fill(0.0);
@@ -156,7 +162,6 @@ impl Level {
                 let column = transposed.column_mut(i)[..n].iter_mut().enumerate();
                 column.skip(i).for_each(|(j, t)| *t = system[(i, j)]);
             }
-            let gap = RankGap { zero: ZERO * self.scale, regular: least };
             if !right.eliminate_beside(transposed, rank, 0, gap) || right.rank() < rank {
                 return false;
             }

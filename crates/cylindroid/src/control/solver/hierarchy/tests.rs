@@ -209,20 +209,25 @@ fn damped_levels_keep_their_rows_alone() {
     assert!(compared > 500 && left > 50, "{compared} compared, {left} left inequalities");
 }
 
-/// The least residual of a level leaves the point, the inequalities that hold it and all that follows
-/// as they are.
+/// The least residual of a level, after others, leaves the point, the inequalities that hold it and
+/// the solution that follows as they are.
 #[test]
 fn least_residuals_change_nothing() {
     let mut random = Random::seeded(19);
     let mut held = 0;
     for round in 0..1000 {
-        let mut problem = Problem::random(&mut random);
+        let problem = Problem::random(&mut random);
         let n = problem.n;
-        problem.levels.truncate(1);
-        let (a, b) = &problem.levels[0];
+        let Some(((a, b), higher)) = problem.levels.split_last() else { continue };
         let run = |looks: bool| {
             let mut set = problem.active_set();
             assert!(set.start(&vec![0.4; n]), "round {round}");
+            for (a, b) in higher {
+                let mut level = Level::new(a.rows(), n);
+                level.rows = a.clone();
+                level.target.copy_from_slice(b);
+                set.solve(&mut level, Precision::EXACT);
+            }
             let mut level = DampedLevel::new(a.rows(), n);
             level.level.rows = a.clone();
             level.level.target.copy_from_slice(b);
