@@ -161,7 +161,7 @@ def test_columns_of_other_kinds(tmp_path):
 
 def test_what_is_not_given(tmp_path):
     robot = cy.load("panda")
-    with pytest.raises(cy.InvalidOptionError, match="one of samples, over and configurations"):
+    with pytest.raises(cy.InvalidOptionError, match="one of samples, over, configurations, poses and reach"):
         cy.sweep(robot)
     with pytest.raises(cy.InvalidOptionError, match="resume"):
         cy.sweep(robot, samples=10, resume=True)
