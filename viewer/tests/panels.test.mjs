@@ -22,6 +22,38 @@ async function holdFocus(page) {
   };
 }
 
+test("a report is asked for again only after its answer, and then for what has changed since", () =>
+  visit(["panda"], async (page) => {
+    let [most, answers] = [0, 0];
+    await page.routeWebSocket(/./, (socket) => {
+      const server = socket.connectToServer();
+      const open = new Set();
+      socket.onMessage((text) => {
+        const { type, name, id } = JSON.parse(String(text));
+        if (type === "report" && name === "mobility") most = Math.max(most, open.add(id).size);
+        server.send(text);
+      });
+      // A slow server: the robot moves on before it answers.
+      server.onMessage((text) => {
+        const { type, name, reply_to } = JSON.parse(String(text));
+        if (type !== "report" || name !== "mobility") return socket.send(text);
+        setTimeout(() => {
+          open.delete(reply_to);
+          answers += 1;
+          socket.send(text);
+        }, 1500);
+      });
+    });
+    await page.reload();
+    await openPanel(page, "mobility");
+    for (const by of [-0.03, -0.03]) await moveTarget(page, "z", by);
+    await untilReached(page, await moveTarget(page, "z", -0.03));
+    await page.locator('[data-panel="mobility"] dl').first().waitFor();
+    await page.waitForTimeout(4000);
+    assert.equal(most, 1, "requests without an answer");
+    assert.ok(answers > 1, "asked for after the robot moved");
+  }));
+
 test("the focus stays on a switch of an actuated joint, on a list and on the buttons of the handle", () =>
   visit(["five-bar"], async (page) => {
     const actuator = page.locator('[data-actuator="q5"]');

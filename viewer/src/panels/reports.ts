@@ -15,11 +15,16 @@ export type Watch = {
 export class Reports {
   private readonly watches = new Map<ReportName, Watch & { stale: boolean }>();
   private readonly asked = new Map<number, ReportName>();
+  /** The request of each report that has no answer yet: the server refuses more than four at once. */
+  private readonly underWay = new Map<ReportName, number>();
   private timer = 0;
   private q = "";
 
   constructor(private readonly session: Session) {
-    session.on("scene", () => this.stale());
+    session.on("scene", () => {
+      this.underWay.clear();
+      this.stale();
+    });
     session.on("state", (state) => {
       const q = state.q.join();
       if (q === this.q) return;
@@ -29,7 +34,9 @@ export class Reports {
     session.on("report", (report) => this.take(report));
     session.on("failure", ({ reply_to, message }) => {
       const name = typeof reply_to === "number" ? this.asked.get(reply_to) : undefined;
-      if (name) this.watches.get(name)?.fail(message);
+      if (!name) return;
+      this.watches.get(name)?.fail(message);
+      this.answered(name, reply_to);
     });
   }
 
@@ -60,18 +67,27 @@ export class Reports {
     const { scene } = this.session;
     if (!scene) return;
     for (const [name, watch] of this.watches) {
-      if (!watch.stale || !watch.panel.isOpen()) continue;
+      if (!watch.stale || !watch.panel.isOpen() || this.underWay.has(name)) continue;
       if (!scene.reports.includes(name)) continue;
       const id = this.session.send({ type: "report", name });
       if (id === null) return;
       watch.stale = false;
       this.asked.set(id, name);
+      this.underWay.set(name, id);
     }
   }
 
   private take(report: Report): void {
     this.watches.get(report.name)?.show(report.report);
     if (typeof report.reply_to === "number") this.asked.delete(report.reply_to);
+    this.answered(report.name, report.reply_to);
+  }
+
+  /** What has changed since is asked for now. */
+  private answered(name: ReportName, id: unknown): void {
+    if (this.underWay.get(name) !== id) return;
+    this.underWay.delete(name);
+    this.later();
   }
 }
 
