@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use cylindroid::model::read_regular_file;
-use cylindroid::sweep::{parquet_columns, parquet_configurations};
+use cylindroid::sweep::{coordinate_column, parquet_columns, parquet_configurations};
 use cylindroid::{Error, Matrix, Result};
 
 /// The largest file of numbers (bytes): 128 MiB, a million configurations of seven coordinates.
@@ -63,11 +63,7 @@ pub(crate) fn configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
     if path.extension().is_some_and(|e| e == "parquet") {
         return parquet_configurations(path, names);
     }
-    read_columns(path, names, |columns, name| {
-        let is_it = |c: &String| c.strip_prefix("q.") == Some(name);
-        let place = columns.iter().position(is_it);
-        place.or_else(|| columns.iter().position(|c| c == name))
-    })
+    read_columns(path, names, coordinate_column)
 }
 
 /// The columns of these names, a row after the other; without names, a row has a number for each.

@@ -70,7 +70,7 @@ pub use optimise::{
 };
 pub use options::{SweepOptions, VelocityMetric};
 pub use own_columns::{ColumnFunction, OwnColumn};
-pub use parquet_input::{parquet_columns, parquet_configurations};
+pub use parquet_input::{coordinate_column, parquet_columns, parquet_configurations};
 pub use quantity::Quantity;
 pub use shared_folder::SharedFolder;
 pub use source::Source;

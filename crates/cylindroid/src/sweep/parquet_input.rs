@@ -25,11 +25,14 @@ const MOST: usize = 1 << 29;
 /// # Errors
 /// As [`parquet_columns`].
 pub fn parquet_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
-    read_columns(path, names, |columns, name| {
-        let is_it = |c: &String| c.strip_prefix("q.") == Some(name);
-        let place = columns.iter().position(is_it);
-        place.or_else(|| columns.iter().position(|c| c == name))
-    })
+    read_columns(path, names, coordinate_column)
+}
+
+/// The place of the column of a coordinate: `q.` and the name, otherwise the name.
+#[must_use]
+pub fn coordinate_column(columns: &[String], name: &str) -> Option<usize> {
+    let place = columns.iter().position(|c| c.strip_prefix("q.") == Some(name));
+    place.or_else(|| columns.iter().position(|c| c == name))
 }
 
 /// The columns of these names, a row after the other.

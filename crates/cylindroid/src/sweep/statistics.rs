@@ -55,14 +55,24 @@ impl Sum {
         }
     }
 
-    /// Of those of these rows that are reached.
-    fn of_reached(counts: &[u64], reached: &[u64], rows: Range<usize>) -> Self {
-        let rows = rows.start.min(counts.len())..rows.end.min(counts.len());
-        let own = counts[rows.clone()].iter().zip(&reached[rows]);
-        let numbers: Vec<f64> = own
-            .map(|(count, reached)| if *reached == 0 { f64::NAN } else { *count as f64 })
-            .collect();
-        Self::numbers(&numbers, |x| x)
+    /// Of those of these rows that are reached: others have no counts and no names.
+    fn of_reached(values: &Values, reached: &[u64], rows: Range<usize>) -> Self {
+        let own = rows.start.min(reached.len())..rows.end.min(reached.len());
+        let is_reached = reached[own.clone()].iter().map(|reached| *reached != 0);
+        match values {
+            Values::Numbers(_) => Self::of_rows(values, rows),
+            Values::Counts(counts) => {
+                let all = counts[own].iter().zip(is_reached);
+                let number = |(count, is): (&u64, bool)| if is { *count as f64 } else { f64::NAN };
+                Self::numbers(&all.map(number).collect::<Vec<_>>(), |x| x)
+            }
+            Values::Texts(texts) => {
+                let mut sum = Self::Texts(Vec::new());
+                let all = texts[own].iter().zip(is_reached).filter(|(_, is)| *is);
+                all.for_each(|(text, _)| sum.count(text, 1));
+                sum
+            }
+        }
     }
 
     /// In lanes, each of which sums every eighth number: a sum does not wait for the one before.
@@ -188,13 +198,13 @@ impl Sweep {
         self.of_parts((0..self.parts()).map(part).collect())
     }
 
-    /// Of these rows of all columns but `index`. Poses that are not reached have no counts.
+    /// Of these rows of all columns but `index`. Poses that are not reached have no counts and names.
     fn sums(&self, values: &[Values], rows: Range<usize>) -> Vec<Sum> {
         let is_it = |c: &Column| self.configurations.of_poses() && c.name == REACHED;
         let place = self.columns.iter().position(is_it).unwrap_or(usize::MAX);
-        let of = |(i, all): (usize, &Values)| match (all, values.get(place)) {
-            (Values::Counts(counts), Some(Values::Counts(reached))) if i > place => {
-                Sum::of_reached(counts, reached, rows.clone())
+        let of = |(i, all): (usize, &Values)| match values.get(place) {
+            Some(Values::Counts(reached)) if i > place => {
+                Sum::of_reached(all, reached, rows.clone())
             }
             _ => Sum::of_rows(all, rows.clone()),
         };

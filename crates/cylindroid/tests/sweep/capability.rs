@@ -9,9 +9,9 @@ use cylindroid::model::{Mechanism, formats};
 use cylindroid::sweep::{
     Axis, DesignSpace, Quantity, Source, Sweep, SweepOptions, Table, VoxelGrid, WriteOptions,
 };
-use cylindroid::{ParametricModel, Pose, Rotation, Vec3};
+use cylindroid::{Pose, Rotation, Vec3};
 
-use crate::{bits, configurations};
+use crate::{bits, configurations, two_links};
 
 fn axis(name: &str, from: f64, to: f64, count: u64) -> Axis {
     Axis { name: name.to_owned(), from, to, count }
@@ -321,13 +321,7 @@ fn points_are_functions_of_their_index() {
 /// Longer links reach more of a grid.
 #[test]
 fn designs_have_maps() {
-    let text = "dimension = 2\ntool = \"tip\"\n[parameters]\nlink = 0.3\n\
-        [[joint]]\nname = \"a\"\ntype = \"revolute\"\nbetween = [\"ground\", \"one\"]\n\
-        origin = [0, 0]\n\
-        [[joint]]\nname = \"b\"\ntype = \"revolute\"\nbetween = [\"one\", \"two\"]\n\
-        origin = [\"link\", 0]\n\
-        [[frame]]\nname = \"tip\"\nlink = \"two\"\nxyz = [\"link\", 0, 0]\n";
-    let model = ParametricModel::of_text(text, Path::new("arm.toml"), &[]).unwrap();
+    let model = two_links();
     let grid = VoxelGrid {
         axes: vec![axis("x", -0.95, 0.95, 9), axis("y", -0.95, 0.95, 9)],
         directions: 0,

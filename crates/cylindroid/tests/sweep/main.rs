@@ -21,8 +21,10 @@ mod quantities;
 mod sampling;
 mod shared_folder;
 
-use cylindroid::Mechanism;
+use std::path::Path;
+
 use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions, Table, Values};
+use cylindroid::{Mechanism, ParametricModel};
 
 /// Samples of a model of the catalogue.
 fn samples(model: &str, count: u64, quantities: &[Quantity]) -> Sweep {
@@ -50,4 +52,15 @@ fn configurations(mechanism: &Mechanism, table: &Table) -> Vec<Vec<f64>> {
     let columns: Vec<&[f64]> =
         mechanism.coordinates().iter().map(|c| table.numbers(&c.name).unwrap()).collect();
     (0..table.rows()).map(|i| columns.iter().map(|c| c[i]).collect()).collect()
+}
+
+/// An arm of two equal links in the plane, with their length as a parameter.
+fn two_links() -> ParametricModel {
+    let text = "dimension = 2\ntool = \"tip\"\n[parameters]\nlink = 0.3\n\
+        [[joint]]\nname = \"a\"\ntype = \"revolute\"\nbetween = [\"ground\", \"one\"]\n\
+        origin = [0, 0]\n\
+        [[joint]]\nname = \"b\"\ntype = \"revolute\"\nbetween = [\"one\", \"two\"]\n\
+        origin = [\"link\", 0]\n\
+        [[frame]]\nname = \"tip\"\nlink = \"two\"\nxyz = [\"link\", 0, 0]\n";
+    ParametricModel::of_text(text, Path::new("arm.toml"), &[]).unwrap()
 }

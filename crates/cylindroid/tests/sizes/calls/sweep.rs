@@ -69,6 +69,7 @@ calls! {
     sweep::Zone::of;
     sweep::ZoneShape::name;
     sweep::ZoneShape::named;
+    sweep::coordinate_column = |name: &'static str| cylindroid::sweep::coordinate_column(&[name.to_owned()], name);
     sweep::parquet_columns;
     sweep::parquet_configurations;
 }
