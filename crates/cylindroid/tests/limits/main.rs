@@ -64,6 +64,16 @@ fn bodies_stay_apart_where_distances_contradict_one_another() {
     }
 }
 
+/// Scenes in which braking within limits of the jerk was cut to what the tasks ask for, and the arm
+/// came 0.4 to 0.5 mm into an obstacle.
+#[test]
+fn braking_within_jerk_limits_ignores_what_the_tasks_ask_for() {
+    for seed in [12752, 15252] {
+        let tally = rounds::run(Kind::Jerks, seed);
+        assert!(tally.steps == 500 && tally.violations.is_empty(), "{:?}", tally.violations);
+    }
+}
+
 /// Rounds that a fuzzer found, and a few at random.
 #[test]
 fn findings_stay_mended() {
