@@ -151,10 +151,11 @@ impl BrakingPath {
         }
         let mut now = 0.0;
         for _ in 0..LOOKS {
-            now = self.next_look(now, steps, motion);
-            if now >= steps {
+            let clear = self.clear_until(now, steps, motion);
+            if clear >= steps {
                 return Ok(None);
             }
+            now = clear.max(now + 1.0);
             motion.change_after(now, &mut self.change);
             self.q.copy_from_slice(start.state.q());
             start.state.mechanism().integrate_in_place(&mut self.q, &self.change, 1.0);
@@ -166,6 +167,9 @@ impl BrakingPath {
                 if !(*distance > 0.0) {
                     return Ok(Some(*pair));
                 }
+            }
+            if now >= steps {
+                return Ok(None);
             }
         }
         let nearest = self.doubtful.iter().min_by(|a, b| a.1.total_cmp(&b.1));
@@ -206,10 +210,10 @@ impl BrakingPath {
         Ok(None)
     }
 
-    /// The last step up to which no pair can move by its distance, and the next one at least.
-    fn next_look(&mut self, now: f64, steps: f64, motion: Motion<'_>) -> f64 {
+    /// The last step up to which no pair can move by its distance since that of the last look.
+    fn clear_until(&mut self, now: f64, steps: f64, motion: Motion<'_>) -> f64 {
         motion.change_after(now, &mut self.change);
-        let (mut clear, mut beyond) = (now + 1.0, steps);
+        let (mut clear, mut beyond) = (now, steps);
         let n = self.change.len();
         while clear < beyond {
             let middle = (0.5 * (clear + beyond)).ceil();
