@@ -30,7 +30,7 @@ pub(crate) use move_to::{
 
 pub(crate) use optimise::OptimiseArgs;
 pub(crate) use screws::ScrewsArgs;
-pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs, ModelArgs};
+pub(crate) use shared::{ConfigurationArgs, FrameArgs, LimitsArgs, MOST, ModelArgs};
 pub(crate) use sweep::{AxisArg, Count, SweepArgs};
 pub(crate) use tasks::{FrameTaskArg, TasksArgs};
 pub(crate) use view::ViewArgs;

@@ -4,8 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
+use cylindroid::model::read_regular_file;
 use ros2_client::ParameterValue;
 use serde::{Deserialize, Serialize};
+
+/// Largest file of parameters (bytes).
+const LARGEST: u64 = 1 << 20;
 
 /// What is published as a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
@@ -202,7 +206,8 @@ impl Parameters {
     /// A file that cannot be read, with the line of an unknown key or a wrong type.
     pub fn over_file(self, file: Option<&Path>) -> Result<Self> {
         let Some(path) = file else { return Ok(self) };
-        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        let bytes = read_regular_file(path, LARGEST)?;
+        let text = String::from_utf8(bytes).with_context(|| path.display().to_string())?;
         let below: Self = toml::from_str(&text).with_context(|| path.display().to_string())?;
         let mut all = toml::Table::try_from(below)?;
         all.extend(toml::Table::try_from(self)?);

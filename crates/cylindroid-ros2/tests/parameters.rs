@@ -78,6 +78,10 @@ fn a_wrong_file_names_the_line() {
     }
     let error = typed(&[]).over_file(Some(Path::new("nowhere.toml"))).unwrap_err();
     assert!(format!("{error:#}").contains("nowhere.toml"));
+    if cfg!(unix) {
+        let error = typed(&[]).over_file(Some(Path::new("/dev/zero"))).unwrap_err();
+        assert!(format!("{error:#}").contains("not a regular file"), "{error:#}");
+    }
 }
 
 #[test]

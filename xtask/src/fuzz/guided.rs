@@ -77,9 +77,9 @@ fn feed(
     let place = |name: &str| folder.join(name);
     let temporary = place("temporary");
     fs::create_dir_all(&temporary)?;
-    let before = names(&place("findings"))?;
     let start = Instant::now();
     let (mut inputs, mut coverage, mut of) = (0, 0, 0);
+    let mut found = Vec::new();
     for round in 0..MOST_FINDINGS as u64 {
         let left = (seconds - start.elapsed().as_secs_f64()).max(1.0);
         let log = place("log.txt");
@@ -114,13 +114,12 @@ fn feed(
         if status.success() {
             break;
         }
+        found.push(failure(target.name, &log));
         if start.elapsed().as_secs_f64() > seconds {
             break;
         }
     }
     fs::remove_dir_all(temporary)?;
-    let found = names(&place("findings"))?;
-    let new: Vec<String> = found.into_iter().filter(|name| !before.contains(name)).collect();
     let spent = start.elapsed().as_secs_f64();
     println!(
         "{:<10} {inputs:>9} inputs in {spent:>5.0} s, {:>6.0} a second; {coverage:>6} of {of} edges, \
@@ -128,9 +127,23 @@ fn feed(
         target.name,
         inputs as f64 / spent,
         names(&place("corpus"))?.len(),
-        new.len()
+        found.len()
     );
-    Ok(new)
+    found.dedup();
+    Ok(found)
+}
+
+/// What ended a run that did not succeed: its finding, new or found again, or the end of its log.
+fn failure(target: &str, log: &str) -> String {
+    let written = log.rsplit_once("Test unit written to ").map(|(_, rest)| rest);
+    match written.and_then(|rest| rest.lines().next()) {
+        Some(path) => path.trim().to_owned(),
+        None => {
+            let last: Vec<&str> = log.lines().rev().take(5).collect();
+            let last: Vec<&str> = last.into_iter().rev().collect();
+            format!("{target} ended without a finding: {}", last.join(" / "))
+        }
+    }
 }
 
 /// The last number after a word.
@@ -149,7 +162,7 @@ fn names(folder: &Path) -> Result<Vec<String>> {
 
 #[cfg(test)]
 mod tests {
-    use super::number_after;
+    use super::{failure, number_after};
 
     #[test]
     fn numbers_of_the_log() {
@@ -158,5 +171,14 @@ mod tests {
         assert_eq!(number_after(log, " cov: "), Some(10));
         assert_eq!(number_after(log, "stat::average_exec_per_sec:"), Some(7));
         assert_eq!(number_after(log, "missing"), None);
+    }
+
+    /// Also a finding that is there already, and a program that ends by itself.
+    #[test]
+    fn every_run_that_fails_is_told() {
+        let log = "==7== ERROR\nartifact_prefix='f/'; Test unit written to f/crash-1\nBase64: AA==";
+        assert_eq!(failure("urdf", log), "f/crash-1");
+        let log = "INFO: Seed: 3\nCYLINDROID_FUZZ_TARGET=\"x\" is no target";
+        assert!(failure("x", log).ends_with("Seed: 3 / CYLINDROID_FUZZ_TARGET=\"x\" is no target"));
     }
 }

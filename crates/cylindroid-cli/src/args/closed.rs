@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use cylindroid::manipulability::EllipsoidView;
 
-use super::ConfigurationArgs;
+use super::{ConfigurationArgs, MOST};
 use crate::values::Joints;
 use crate::values::{ByName, Intervals, List, Weights};
 
@@ -71,6 +72,7 @@ pub(crate) struct MobilityArgs {
     /// then random restarts within limits. Modes may be missed, and one mode may comprise several
     /// components with equal counts
     #[arg(long, value_name = "STARTS", allow_negative_numbers = true)]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(0..=MOST))]
     pub(crate) modes: Option<usize>,
 
     /// Seed of the random restarts of --modes
@@ -111,6 +113,7 @@ pub(crate) struct AssembleArgs {
     /// limits. Modes may be missed; the number of starts that led to each is printed
     #[arg(long, value_name = "STARTS", conflicts_with = "to")]
     #[arg(allow_negative_numbers = true)]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(0..=MOST))]
     pub(crate) modes: Option<usize>,
 
     /// Seed of the random restarts of --modes

@@ -1,9 +1,10 @@
 //! The arguments of `distance`.
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use cylindroid::collision::MeshShape;
 
-use super::ConfigurationArgs;
+use super::{ConfigurationArgs, MOST};
 use crate::obstacle::ObstacleArg;
 
 pub(crate) const ABOUT: &str = "\
@@ -51,6 +52,7 @@ pub(crate) struct CollisionArgs {
     /// Random configurations by which pairs that always or never touch are found; 0 keeps all pairs
     /// [default: 200]
     #[arg(long, value_name = "N")]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(0..=MOST))]
     pub(crate) samples: Option<usize>,
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
-use super::{CollisionArgs, ConfigurationArgs, FrameArgs, LimitsArgs, TargetArgs};
+use super::{CollisionArgs, ConfigurationArgs, FrameArgs, LimitsArgs, MOST, TargetArgs};
 
 pub(crate) const ABOUT: &str = "\
 Inverse kinematics: configurations that bring a frame to a target, within all limits
@@ -121,7 +121,7 @@ pub(crate) struct IkArgs {
     /// Return up to N distinct solutions, the closest to --q first, with --maximise the best
     #[arg(long, value_name = "N", conflicts_with = "nearest", allow_negative_numbers = true)]
     #[arg(help_heading = "Search")]
-    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST))]
     pub(crate) all: Option<usize>,
 
     /// Seed for the random restarts
@@ -142,6 +142,7 @@ pub(crate) struct IkArgs {
     /// Iteration limit, over all restarts
     #[arg(long, value_name = "N", default_value_t = 20_000, allow_negative_numbers = true)]
     #[arg(help_heading = "Search")]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(0..=MOST))]
     pub(crate) iterations: usize,
 
     #[command(flatten)]

@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 
 use super::sweep::AxisArg;
-use super::{FrameArgs, ModelArgs};
+use super::{FrameArgs, MOST, ModelArgs};
 use crate::values::{Assignment, Joints};
 
 pub(crate) const ABOUT: &str = "\
@@ -63,7 +63,7 @@ pub(crate) struct MapArgs {
 
     /// Random restarts that look for working modes at the start; others look in other cells
     #[arg(long, value_name = "N", default_value_t = 64, allow_negative_numbers = true)]
-    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST))]
     pub(crate) starts: usize,
 
     /// Seed for the random restarts

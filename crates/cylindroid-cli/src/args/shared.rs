@@ -6,6 +6,9 @@ use clap::Args;
 
 use crate::values::{Assignment, Joints, Numbers};
 
+/// Starts, iterations or rays at most: time grows with them.
+pub(crate) const MOST: u64 = 1_000_000;
+
 /// A model.
 #[derive(Debug, Args)]
 pub(crate) struct ModelArgs {

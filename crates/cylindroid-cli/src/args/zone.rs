@@ -1,9 +1,10 @@
 //! The arguments of `zone`.
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use cylindroid::sweep::ZoneShape;
 
-use super::{FrameArgs, ModelArgs};
+use super::{FrameArgs, MOST, ModelArgs};
 use crate::values::{Assignment, Joints, List};
 
 pub(crate) const ABOUT: &str = "\
@@ -70,6 +71,7 @@ pub(crate) struct ZoneArgs {
 
     /// Number of rays beside those along the components
     #[arg(long, value_name = "N", default_value_t = 256, allow_negative_numbers = true)]
+    #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(0..=MOST))]
     pub(crate) rays: usize,
 
     /// Seed for the directions of the rays

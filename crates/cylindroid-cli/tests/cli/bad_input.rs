@@ -246,3 +246,21 @@ fn zero_joints_are_a_size() {
         }
     }
 }
+
+/// Numbers that would let a command run for ever are refused at once.
+#[test]
+fn counts_and_steps_are_bounded() {
+    refused_move(&["--dt", "1e-120"], "--dt = 1e-120 s");
+    refused_move(&["--dt", "1e-9"], "lower --time-limit");
+    refused_move(&["--time-limit", "1e9"], "lower --time-limit");
+    let many = "18446744073709551615";
+    for line in [
+        &["ik", "panda", "--to", "0.4,0,0.4", "--iterations", many][..],
+        &["ik", "panda", "--to", "0.4,0,0.4", "--all", many],
+        &["assemble", "stewart", "--modes", many],
+        &["mobility", "stewart", "--modes", many],
+        &["distance", "panda", "--samples", many],
+    ] {
+        refused(line, "1000000");
+    }
+}

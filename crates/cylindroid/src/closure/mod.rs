@@ -33,6 +33,7 @@ mod statics;
 pub use constraint::closed_chain::ClosedChain;
 pub(crate) use constraint::closed_chain_batched::BatchedConstraintPlan;
 pub use constraint::loop_closure_error::LoopClosureError;
+pub(crate) use constraint::velocity_constraint::check_coordinates;
 pub use constraint::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 pub use mobility::actuation_map::ActuationMap;
 pub use mobility::blocks::CoordinateKinds;

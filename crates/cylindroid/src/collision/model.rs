@@ -67,7 +67,8 @@ impl CollisionModel {
     /// ```
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for a margin that is not finite.
+    /// [`Error::InvalidOption`] for a margin that is not finite, and for more than a million pairs of
+    /// shapes that could collide.
     pub fn new(mechanism: &Mechanism, options: &CollisionOptions) -> Result<Self> {
         let (mut scene, mut ignored) = (Scene::default(), Vec::new());
         for (index, link) in mechanism.links().iter().enumerate() {
@@ -94,7 +95,7 @@ impl CollisionModel {
                 }
             }
         }
-        scene.pairs = pairs::candidates(mechanism, &scene.bodies, &options.disabled, &mut ignored);
+        scene.pairs = pairs::candidates(mechanism, &scene.bodies, &options.disabled, &mut ignored)?;
         drop_constant(mechanism, &mut scene, options)?;
         Ok(Self {
             mechanism: mechanism.clone(),

@@ -8,16 +8,23 @@
 use super::body::Body;
 use super::convex::Core;
 use super::scene::Pair;
+use crate::error::{Error, Result};
 use crate::model::{Ignored, JointKind, Mechanism};
+
+/// Pairs of shapes at most: each has its own memory, and its distance is evaluated in every search.
+const MOST_PAIRS: usize = 1_000_000;
 
 /// All pairs of shapes of links that can move relative to one another and are neither neighbours
 /// nor disabled; disabled pairs of unknown links are logged.
+///
+/// # Errors
+/// More than [`MOST_PAIRS`].
 pub(super) fn candidates(
     mechanism: &Mechanism,
     bodies: &[Body],
     disabled: &[[String; 2]],
     ignored: &mut Vec<Ignored>,
-) -> Vec<Pair> {
+) -> Result<Vec<Pair>> {
     let link = |name: &String| mechanism.links().iter().position(|l| l.name == *name);
     let by_file = mechanism.disabled_collisions().iter().map(|&[a, b]| ordered(a, b));
     let mut apart: Vec<(usize, usize)> = by_file.collect();
@@ -53,12 +60,23 @@ pub(super) fn candidates(
             let off = links.is_some_and(|l| apart.binary_search(&l).is_ok());
             let planes = is_half_space(first) && is_half_space(second);
             let ignore = (first.category & second.mask) | (second.category & first.mask) == 0;
-            if !(rigid || near || off || planes || ignore) {
-                pairs.push(Pair { a, b });
+            if rigid || near || off || planes || ignore {
+                continue;
             }
+            if pairs.len() == MOST_PAIRS {
+                return Err(Error::InvalidOption {
+                    option: "collision model",
+                    value: format!("{} shapes", bodies.len()),
+                    reason: format!(
+                        "more than {MOST_PAIRS} pairs of them could collide; merge shapes, give fewer \
+                         links a collision shape, or disable pairs in an SRDF"
+                    ),
+                });
+            }
+            pairs.push(Pair { a, b });
         }
     }
-    pairs
+    Ok(pairs)
 }
 
 fn ordered(a: usize, b: usize) -> (usize, usize) {

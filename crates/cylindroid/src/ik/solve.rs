@@ -28,6 +28,7 @@ use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
 use super::self_motion::Descent;
 use super::solution::{Candidate, FoundBy, Solution};
+use crate::closure::check_coordinates;
 use crate::error::Result;
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
@@ -145,6 +146,7 @@ impl Solver {
         options.check(mechanism)?;
         check_all(mechanism, goals)?;
         let problem = Problem::new(mechanism, goals, options)?;
+        check_coordinates("mechanism of inverse kinematics", problem.coordinates.len())?;
         let start = options.initial_guess.clone().unwrap_or_else(|| mechanism.home().to_vec());
         let formulas = ClosedForm::of(mechanism, goals, options);
         let descent = Descent::new(&problem);

@@ -114,7 +114,7 @@ fn read(name: &str, text: &str, given: ParameterValues<'_>) -> Result<(Mechanism
         &path(name),
         "catalogue",
         given,
-        (0, &|_, name, _, values| load_with(name, values)),
+        (toml::Nesting::default(), &|_, name, _, values| load_with(name, values)),
         &Ok,
     )
 }

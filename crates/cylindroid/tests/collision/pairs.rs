@@ -120,3 +120,23 @@ fn the_choice_repeats() {
     let robot = robot(2.0);
     assert_eq!(names(&robot, &options), names(&robot, &options));
 }
+
+/// A star of links without an end of pairs is refused before they are made.
+#[test]
+fn pairs_have_a_limit() {
+    let star = |n: usize| {
+        let mut builder = Mechanism::builder("star");
+        builder.link(Link::named("hub"));
+        for i in 0..n {
+            builder.link(link(&format!("l{i}"), &[0.5]));
+            let joint =
+                JointSpec::new(&format!("j{i}"), JointKind::Revolute, "hub", &format!("l{i}"));
+            builder.joint(joint);
+        }
+        builder.build().unwrap()
+    };
+    let options = CollisionOptions { samples: 0, ..CollisionOptions::default() };
+    assert_eq!(names(&star(100), &options).len(), 100 * 99 / 2);
+    let error = CollisionModel::new(&star(2000), &options).unwrap_err().to_string();
+    assert!(error.contains("2000 shapes") && error.contains("more than 1000000 pairs"), "{error}");
+}

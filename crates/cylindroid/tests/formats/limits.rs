@@ -222,3 +222,23 @@ fn large_models_are_loaded() {
     let robot = read_sdf(&format!("<sdf><model name='m'><link name='l'/>{frames}</model></sdf>"));
     assert_eq!(robot.unwrap().frames().len(), n);
 }
+
+/// Seven files, each of which brings in the next one ten times, would be a million robots.
+#[test]
+fn robots_of_all_included_files_are_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    for i in 0..7 {
+        let next = format!("f{}.toml", i + 1);
+        let robot = |k: usize| format!("[[robot]]\nname = \"r{k}\"\nmodel = \"{next}\"\n");
+        written(&folder, &format!("f{i}.toml"), (0..10).map(robot).collect::<String>());
+    }
+    let joint = "[[joint]]\nname = \"j\"\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\n";
+    written(&folder, "f7.toml", joint);
+    let message = told(|| load_file(&folder.path().join("f0.toml")));
+    assert!(message.contains("is one more than 1000 robots"), "{message}");
+    // Each file counts for itself.
+    for _ in 0..2 {
+        let robot = load_file(&folder.path().join("f5.toml")).unwrap();
+        assert_eq!(robot.n(), 100);
+    }
+}

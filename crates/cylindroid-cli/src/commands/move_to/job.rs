@@ -63,7 +63,6 @@ impl Job {
         let degrees = args.configuration.degrees;
         let start = configuration(&robot, &args.configuration)?;
         within_limits(&robot, "--q", &start)?;
-        Error::check_positive("--time-limit", args.time_limit)?;
 
         check_jerks(&args.path)?;
 
@@ -78,6 +77,7 @@ impl Job {
         options.secondary = secondary(&args.servo.secondary, &robot, &options, &start)?;
         // Before the target is looked at: a broken option is the clearer message.
         options.check(&robot)?;
+        check_steps(args.time_limit, options.dt)?;
 
         let defaults = joint_defaults(args);
         let pose = |q: &[f64]| robot.state(q)?.pose(options.end_effector);
@@ -130,6 +130,26 @@ impl Job {
             defaults,
         })
     }
+}
+
+/// Steps of a motion at most; each is recorded.
+const MOST_STEPS: f64 = 1e7;
+
+/// Returns an error for a time limit that is not positive or has too many steps.
+pub(super) fn check_steps(time_limit: f64, dt: f64) -> Result<()> {
+    Error::check_positive("--time-limit", time_limit)?;
+    if time_limit / dt > MOST_STEPS {
+        return Err(Error::InvalidOption {
+            option: "--dt",
+            value: format!("{dt} s"),
+            reason: format!(
+                "{time_limit} s have {:.1e} such steps, more than {MOST_STEPS:e}; take a longer step \
+                 or a lower --time-limit",
+                time_limit / dt
+            ),
+        });
+    }
+    Ok(())
 }
 
 /// Joints of loops cannot all move straight.

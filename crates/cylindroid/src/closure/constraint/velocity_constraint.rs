@@ -335,6 +335,21 @@ pub(crate) fn check_entries(rows: usize, columns: usize) -> Result<()> {
     if rows.saturating_mul(columns) > most { check_size(rows, columns) } else { Ok(()) }
 }
 
+/// Returns an error for more moving coordinates than a controller or a search has dense matrices for.
+pub(crate) fn check_coordinates(what: &'static str, coordinates: usize) -> Result<()> {
+    if coordinates <= MOST_COLUMNS {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: what,
+        value: format!("{coordinates} coordinates that move"),
+        reason: format!(
+            "at most {MOST_COLUMNS} are taken, in dense matrices; name a frame that fewer joints \
+             move, or take a part of the mechanism (a group of an SRDF, or the others as fixed joints)"
+        ),
+    })
+}
+
 /// Returns an error for the first entry that is NaN or infinite.
 pub(crate) fn check_finite(name: &str, m: &Matrix) -> Result<()> {
     match m.as_slice().iter().position(|x| !x.is_finite()) {

@@ -39,6 +39,7 @@ use super::stall::{Stall, StallDetector, StallInputs, classify};
 use super::step::{Aim, Status, Step, Target};
 use super::task_space::TaskSpace;
 use super::twist_step::TwistFollower;
+use crate::closure::check_coordinates;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::saturation::{Saturation, Saturator};
 use crate::error::{Error, Result};
@@ -143,6 +144,7 @@ impl Servo {
                 ),
             });
         }
+        check_coordinates("mechanism of a servo", n)?;
         let own = chain.coordinates().iter().map(|&c| mechanism.coordinates()[c].limits);
         let limits: Vec<Limits> = own
             .chain(limits_of_loop_joints(mechanism))

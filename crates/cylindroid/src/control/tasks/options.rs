@@ -3,6 +3,7 @@
 //! Checked  tests/it/servo/tasks.rs
 
 use super::objective::TaskObjective;
+use crate::closure::check_coordinates;
 use crate::collision::CollisionModel;
 use crate::control::servo::{Plant, PoseTolerance, Status};
 use crate::control::solver::bounds::LimitKind;
@@ -196,6 +197,7 @@ pub(super) fn check(
     if mechanism.n() == 0 {
         return refuse("mechanism", mechanism.name().to_owned(), "no joint moves");
     }
+    check_coordinates("mechanism of a servo", mechanism.n())?;
     let positive = Error::check_positive;
     positive("dt", options.dt)?;
     positive("length", options.length)?;

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::text_file;
+use super::toml::Nesting;
 use super::{mjcf, sdf, toml, urdf, xacro, xml_limits};
 use crate::error::{Error, Result, shown};
 use crate::model::{CloseHome, Mechanism, ParameterValues, catalogue};
@@ -22,20 +23,20 @@ pub(crate) fn load(
     given: ParameterValues<'_>,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
-    load_from(Path::new(""), name_or_path, given, 0, close)
+    load_from(Path::new(""), name_or_path, given, Nesting::default(), close)
 }
 
-/// [`load`] for a file in `folder`, at a nesting depth of `depth` inclusions.
+/// [`load`] for a file in `folder`, which others may include.
 pub(super) fn load_from(
     folder: &Path,
     name_or_path: &str,
     given: ParameterValues<'_>,
-    depth: usize,
+    nesting: Nesting,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
     match found(folder, name_or_path)? {
         None => catalogue::load_with(name_or_path, given),
-        Some(path) => read_file(&path, given, depth, close),
+        Some(path) => read_file(&path, given, nesting, close),
     }
 }
 
@@ -64,7 +65,7 @@ pub(crate) fn load_file(
     given: ParameterValues<'_>,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
-    read_file(path, given, 0, close)
+    read_file(path, given, Nesting::default(), close)
 }
 
 /// The text of a mechanism file, by name or path, and its path.
@@ -92,17 +93,17 @@ fn is_mechanism_file(path: &Path) -> bool {
 fn read_file(
     path: &Path,
     given: ParameterValues<'_>,
-    depth: usize,
+    nesting: Nesting,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
     let file = text_file::read(path)?;
     if is_mechanism_file(path) {
-        let loader = |from: &Path, name: &str, depth, values: ParameterValues<'_>| {
-            load_from(from, name, values, depth, close)
+        let loader = |from: &Path, name: &str, nesting, values: ParameterValues<'_>| {
+            load_from(from, name, values, nesting, close)
         };
         let text = file.utf8("mechanism file", path)?;
-        let depth = (depth, &loader as toml::Loader<'_>);
-        return Ok(toml::describe(&text, path, "mechanism file", given, depth, close)?.0);
+        let nesting = (nesting, &loader as toml::Loader<'_>);
+        return Ok(toml::describe(&text, path, "mechanism file", given, nesting, close)?.0);
     }
     if let Some((name, _)) = given.first() {
         return Err(toml::none(name, &shown(path)));

@@ -4,9 +4,11 @@ use cylindroid::closure::{
     ClosedChain, Constraint, ConstraintBlocks, Diagnosis, FiniteMobility, Mobility, MotionSpace,
     Subspace,
 };
+use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions};
+use cylindroid::ik::{Goal, IkOptions, Solver};
 use cylindroid::model::{JointKind, JointSpec, LoopJointSpec};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
-use cylindroid::{Error, Matrix, Mechanism, ReferenceFrame};
+use cylindroid::{Error, Matrix, Mechanism, ReferenceFrame, Servo, ServoOptions};
 
 use crate::support::Random;
 
@@ -159,4 +161,28 @@ fn more_joints_than_are_analysed() {
         let text = error.unwrap_err().to_string();
         assert!(text.contains("at most 2000") && text.contains("fixed joints"), "{text}");
     }
+}
+
+/// Servos and inverse kinematics have dense matrices of the coordinates that move a frame.
+#[test]
+fn more_joints_than_are_controlled() {
+    let m = chain(2001, false, false, false);
+    let options = TaskServoOptions::new(&m);
+    let posture = TaskObjective::Posture { q: m.home().to_vec() };
+    let target = m.state(m.home()).unwrap().pose(m.tool()).unwrap();
+    for error in [
+        Servo::new(&m, ServoOptions::new(&m)).map(drop),
+        TaskServo::new(&m, vec![MotionTask::new("rest", posture)], options).map(drop),
+        Solver::new(&m, &[Goal::pose(m.tool(), target)], &IkOptions::default()).map(drop),
+    ] {
+        let text = error.unwrap_err().to_string();
+        assert!(
+            text.contains("2001 coordinates that move") && text.contains("at most 2000"),
+            "{text}"
+        );
+    }
+    // A frame that few joints move.
+    let near = m.frame(&m.links()[3].name).unwrap();
+    let few = ServoOptions { end_effector: near.into(), ..ServoOptions::new(&m) };
+    assert!(Servo::new(&m, few).is_ok());
 }

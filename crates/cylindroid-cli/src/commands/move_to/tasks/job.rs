@@ -11,6 +11,7 @@ use cylindroid::{Error, State};
 use super::file;
 use crate::args::{FrameTaskArg, LawName, MoveArgs, NullSpaceName};
 use crate::commands::distance::collision_model;
+use crate::commands::move_to::job::check_steps;
 use crate::commands::shared::{
     all_actuated, configuration, end_effector, limited, load, within_limits,
 };
@@ -43,7 +44,6 @@ impl TaskJob {
         }
         let start = configuration(&robot, &args.configuration)?;
         within_limits(&robot, "--q", &start)?;
-        Error::check_positive("--time-limit", args.time_limit)?;
         let (tasks, half_spaces) = tasks(args, &robot, &start)?;
         let mut options = options(args, &robot)?;
         options.half_spaces = half_spaces;
@@ -52,6 +52,7 @@ impl TaskJob {
         }
         let distances = options.collisions.as_ref().map(|c| (c.gap, c.margin));
         let servo = TaskServo::new(&robot, tasks, options)?;
+        check_steps(args.time_limit, servo.dt())?;
         Ok(Self { robot, servo, start, time_limit: args.time_limit, distances })
     }
 }

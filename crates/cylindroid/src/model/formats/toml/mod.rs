@@ -33,7 +33,7 @@ pub use self::limits_file::{with_limits_of_file, with_limits_of_text};
 pub(in crate::model) use self::parameters::none;
 pub use self::parse::parse;
 pub(crate) use self::parse::read;
-pub(in crate::model) use self::robot::Loader;
+pub(in crate::model) use self::robot::{Loader, Nesting};
 
 use std::path::Path;
 
@@ -75,7 +75,7 @@ pub(in crate::model) fn describe(
     path: &Path,
     format: &'static str,
     given: ParameterValues<'_>,
-    (depth, loader): (usize, Loader<'_>),
+    (nesting, loader): (Nesting, Loader<'_>),
     close: CloseHome<'_>,
 ) -> Result<(Mechanism, String)> {
     let source = Source { format, path, text };
@@ -107,7 +107,7 @@ pub(in crate::model) fn describe(
     world.arm(arm);
     let joints = tree::joints(&file, planar)?;
     let mut rest = joints.clone();
-    robot::include(&file, &mut world, &mut rest, depth, loader)?;
+    robot::include(&file, &mut world, &mut rest, &nesting, loader)?;
     let brought: Vec<String> = world.placed();
     let brought: Vec<String> = brought.into_iter().filter(|l| world.is_brought(l)).collect();
     let contacts = contact::contacts(&file, planar)?;

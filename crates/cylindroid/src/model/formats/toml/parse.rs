@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::describe;
+use super::{Nesting, describe};
 use crate::error::Result;
 use crate::model::formats::load::load_from;
 use crate::model::{CloseHome, Mechanism, ParameterValues};
@@ -24,8 +24,8 @@ pub(crate) fn read(
     given: ParameterValues<'_>,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
-    let loader = |from: &Path, name: &str, depth, values: ParameterValues<'_>| {
-        load_from(from, name, values, depth, close)
+    let loader = |from: &Path, name: &str, nesting, values: ParameterValues<'_>| {
+        load_from(from, name, values, nesting, close)
     };
-    Ok(describe(text, path, "mechanism file", given, (0, &loader), close)?.0)
+    Ok(describe(text, path, "mechanism file", given, (Nesting::default(), &loader), close)?.0)
 }

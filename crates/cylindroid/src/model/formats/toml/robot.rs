@@ -7,7 +7,9 @@
 //!          name keep their names, so that joints and contacts can be added to an unchanged URDF
 //! Checked  tests/formats/closed_file.rs::robots_*, tests/formats/carried_robots.rs
 
+use std::cell::Cell;
 use std::path::Path;
+use std::rc::Rc;
 
 use super::names::GROUND;
 use super::tree::{self, JointEntry};
@@ -23,10 +25,20 @@ const KEYS: [&str; 9] =
 /// Loads the model of a `[[robot]]` table: from the folder of the file, by name or path, at a
 /// depth of inclusion, with these values of its parameters.
 pub(in crate::model) type Loader<'a> =
-    &'a dyn Fn(&Path, &str, usize, ParameterValues<'_>) -> Result<Mechanism>;
+    &'a dyn Fn(&Path, &str, Nesting, ParameterValues<'_>) -> Result<Mechanism>;
 
 /// Maximum depth of inclusion; deeper nesting is treated as a cycle.
 const DEEPEST: usize = 8;
+
+/// Robots that a file and those that it includes may bring in.
+const MOST_ROBOTS: usize = 1000;
+
+/// How deep a file is included, and the robots brought in so far by all files of the outermost one.
+#[derive(Debug, Clone, Default)]
+pub(in crate::model) struct Nesting {
+    depth: usize,
+    robots: Rc<Cell<usize>>,
+}
 
 /// The `[[robot]]` tables.
 pub(super) fn tables<'t>(file: &Table<'t>) -> Result<Vec<Table<'t>>> {
@@ -39,7 +51,7 @@ pub(super) fn include<'t>(
     file: &Table<'t>,
     world: &mut World<'_>,
     joints: &mut Vec<JointEntry<'t>>,
-    depth: usize,
+    nesting: &Nesting,
     loader: Loader<'_>,
 ) -> Result<()> {
     let tables = tables(file)?;
@@ -62,7 +74,7 @@ pub(super) fn include<'t>(
             return Err(table.refuse("name", message, "what the robot brings is called name/..."));
         }
         names.push(name);
-        let robot = load(table, depth, loader)?;
+        let robot = load(table, nesting, loader)?;
         if let Some(link) = table.string("link")?
             && !world.has(link)
         {
@@ -111,16 +123,24 @@ fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, robot: Mechanism) -
     Ok(())
 }
 
-fn load(table: &Table<'_>, depth: usize, loader: Loader<'_>) -> Result<Mechanism> {
+fn load(table: &Table<'_>, nesting: &Nesting, loader: Loader<'_>) -> Result<Mechanism> {
     let model = table.required_string("model")?;
+    let (depth, robots) = (nesting.depth, &nesting.robots);
     if depth >= DEEPEST {
         let message = format!("'{model}' is included by {DEEPEST} files, one in the other");
         return Err(table.refuse("model", message, "does a file include itself?"));
     }
+    if robots.get() >= MOST_ROBOTS {
+        let message = format!("'{model}' is one more than {MOST_ROBOTS} robots");
+        let help = "more are not loaded; bring in fewer, or write them as joints of one file";
+        return Err(table.refuse("model", message, help));
+    }
+    robots.set(robots.get() + 1);
+    let inner = Nesting { depth: depth + 1, robots: Rc::clone(robots) };
     let folder = table.source.path.parent().unwrap_or_else(|| Path::new(""));
     let values = table.named_numbers("parameters")?.unwrap_or_default();
     let values: Vec<(&str, f64)> = values.iter().map(|(name, x, _)| (*name, *x)).collect();
-    match loader(folder, model, depth + 1, &values) {
+    match loader(folder, model, inner, &values) {
         Err(
             error @ (Error::UnknownName { what: "parameter", .. }
             | Error::InvalidOption { option: "parameter", .. }),
