@@ -1,6 +1,10 @@
-/** Undo and redo: configurations with their targets, one for each thing that the user has done. */
+/**
+ * Undo and redo: configurations with their targets, one for each thing that the user has done. A recording has
+ * a mark for each: where one is shown, undo and redo go from mark to mark.
+ */
 import type { Pose, ToServer } from "./protocol";
 import type { Session } from "./session";
+import type { Timeline } from "./timeline/timeline";
 
 type Moment = { frame: string; q: number[]; target: Pose };
 
@@ -18,7 +22,10 @@ export class History {
   private held = false;
   private own = false;
 
-  constructor(private readonly session: Session, private readonly changed: (undo: boolean, redo: boolean) => void) {
+  constructor(
+    private readonly session: Session, private readonly timeline: Timeline,
+    private readonly changed: (undo: boolean, redo: boolean) => void,
+  ) {
     session.on("sending", (message) => this.sending(message));
     // Before the press is handled: it begins something new.
     addEventListener("pointerdown", () => this.press(true), true);
@@ -26,11 +33,11 @@ export class History {
   }
 
   undo(): void {
-    this.go(this.past, this.future);
+    if (!this.timeline.step(-1)) this.go(this.past, this.future);
   }
 
   redo(): void {
-    this.go(this.future, this.past);
+    if (!this.timeline.step(1)) this.go(this.future, this.past);
   }
 
   /** Another session: its past is not here. */
@@ -56,6 +63,7 @@ export class History {
     // Two messages in one state are one step.
     const last = this.past.at(-1);
     if (last?.q !== moment.q || last.frame !== moment.frame) this.past.push(moment);
+    this.timeline.noteStep();
     if (this.past.length > MOST) this.past.shift();
     this.future.length = 0;
     this.tell();
@@ -85,7 +93,9 @@ export class History {
     return scene && state ? { frame: scene.frame, q: state.q, target: state.target } : null;
   }
 
-  private tell(): void {
-    this.changed(this.past.length > 0, this.future.length > 0);
+  /** What can be undone and redone. */
+  tell(): void {
+    const { steps } = this.timeline;
+    this.changed(steps ? steps.before : this.past.length > 0, steps ? steps.after : this.future.length > 0);
   }
 }

@@ -57,6 +57,7 @@ function start(): void {
   const session = new Session(socketUrl("./ws"), () => stage.invalidate());
   const timeline = new Timeline(page.dock, session, {
     redraw: () => redraw(),
+    moved: () => history.tell(),
     wake: () => stage.invalidate(),
     say: page.toast,
     changed: (recording, states) => bar.recorded(recording, states),
@@ -132,9 +133,16 @@ function start(): void {
     if (moment) draw(moment.scene, moment.state);
     stage.invalidate();
   };
-  const collisions = new Collisions(() => stage.invalidate());
-  const distances = new Distances(session, labels, redraw, (shown) => collisions.show(shown));
-  const switches = new Switches(overlays, (shown) => robot.showShapes(shown), () => {
+  const collisions = new Collisions({
+    changed: () => stage.invalidate(),
+    problems: (sentences) => {
+      if (sentences.length > 0) {
+        page.toast(`${sentences.length === 1 ? "A collision shape is" : `${sentences.length} collision shapes are`} missing. ${sentences[0] ?? ""}`, true);
+      }
+    },
+  });
+  const distances = new Distances(session, labels, redraw);
+  const switches = new Switches(overlays, { shapes: (shown) => robot.showShapes(shown), collisions: (shown) => collisions.show(shown) }, () => {
     const name = session.scene?.name ?? "cylindroid";
     gltf(name, robot.group).then(
       (blob) => download(blob, `${name}.glb`),
@@ -182,7 +190,7 @@ function start(): void {
   const dialog = new OpenDialog((file) => void map.open(file).then((is) => (is ? undefined : timeline.open(file))), (id) => companions.add(id));
   onDrop((files) => void dialog.take(files));
   distances.panel.onToggle(() => timeline.refresh());
-  const history = new History(session, (undo, redo) => bar.undoable(undo, redo));
+  const history = new History(session, timeline, (undo, redo) => bar.undoable(undo, redo));
   addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return;
     const key = event.key.toLowerCase();

@@ -335,6 +335,8 @@ export type State = {
   "type": "state",
   seq: number,
   time: number,
+  /** Since the session began (s). */
+  clock: number,
   ack: string | number | null,
   playing: boolean,
   target: Pose,

@@ -1,12 +1,17 @@
 /** For everybody: axe-core finds no violation, light and dark, wide and narrow; every action has a key. */
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
+import { execFile } from "node:child_process";
+import { mkdtemp, readFile, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { test } from "node:test";
-import { fileURLToPath } from "node:url";
-import { apart, browserOfFile, openPanel, served, showOverlay, until } from "./lib.mjs";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { promisify } from "node:util";
+import { apart, BINARY, browserOfFile, moveTarget, openFiles, openPanel, saved, served, showOverlay, until } from "./lib.mjs";
 
 const { look, visit } = browserOfFile();
+const folder = await mkdtemp(join(tmpdir(), "cylindroid-access-"));
 
 const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const CELL = fileURLToPath(new URL("../../docs/cell.toml", import.meta.url));
@@ -25,11 +30,14 @@ async function violations(page) {
   });
 }
 
-/** Width, height, and whether it is dark. */
-const LOOKS = /** @type {const} */ ([[1366, 768, false], [390, 844, true], [1366, 768, true], [390, 844, false], [844, 390, true], [1100, 700, false], [1920, 1080, true]]);
+/** Width, height, and whether it is dark. The first two are those of every model. */
+const LOOKS = /** @type {const} */ ([
+  [1366, 768, false], [390, 844, true], [1366, 768, true], [390, 844, false], [844, 390, true], [844, 390, false],
+  [1100, 700, false], [1100, 700, true], [1920, 1080, true], [1920, 1080, false],
+]);
 /** @type {[string, string[], number][]} */
 const MODELS = [
-  ["an arm among obstacles", [CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3", "--obstacle", "box=box:0.1,0.2,0.3@0.7,0.6,0.3"], 7],
+  ["an arm among obstacles", [CELL, "--obstacle", "ball=sphere:0.08@0.4,0.25,0.3", "--obstacle", "box=box:0.1,0.2,0.3@0.7,0.6,0.3"], LOOKS.length],
   ["a planar closed chain", ["five-bar"], 2],
   ["a platform", ["stewart"], 2],
 ];
@@ -60,6 +68,45 @@ for (const [words, args, looks] of MODELS) {
         }, { width, height, dark });
       }
     }));
+}
+
+for (const dark of [false, true]) {
+  const options = { dark, width: 1366, height: 768, expect: /422/ };
+  const words = dark ? "dark" : "light";
+
+  test(`axe-core finds no violation: the dialogue, a map and a page that plays by itself, ${words}`, () =>
+    visit(["panda"], async (page) => {
+      await page.getByRole("button", { name: "Open a file" }).click();
+      await page.locator("dialog").getByText("Catalogue").waitFor();
+      assert.deepEqual(await violations(page), [], "the dialogue");
+      await writeFile(join(folder, "broken.urdf"), '<robot name="broken">\n  <link name="base">\n</robot>\n');
+      await openFiles(page, join(folder, "broken.urdf"));
+      await page.locator("dialog .problem code").waitFor();
+      assert.deepEqual(await violations(page), [], "a refusal");
+      await promisify(execFile)(BINARY, ["sweep", "panda", "--samples", "300", "--quantities", "pose,yoshikawa", "--out", `${words}.csv`], { cwd: folder });
+      await openFiles(page, join(folder, `${words}.csv`));
+      await page.locator('[data-panel="map"]').getByText(`${words}.csv, 300 points`).waitFor();
+      assert.deepEqual(await violations(page), [], "a map");
+      await page.getByRole("button", { name: "Record" }).click();
+      await moveTarget(page, "z", -0.03);
+      await page.getByRole("button", { name: /^Stop recording/ }).click();
+      const path = join(folder, `${words}.html`);
+      await writeFile(path, await saved(page, "Save HTML that plays the recording by itself"));
+      const film = await page.context().newPage();
+      await film.setViewportSize(options);
+      await film.goto(pathToFileURL(path).href);
+      await film.waitForFunction(() => /** @type {any} */ (window).film?.stage.frames > 1);
+      assert.deepEqual(await violations(film), [], "the page of a recording");
+    }, options));
+
+  test(`axe-core finds no violation: an observer, ${words}`, () =>
+    served(["panda"], ({ url }) =>
+      look(`${url}?session=access`, () =>
+        look(`${url}?session=access`, async (observer) => {
+          await observer.locator(".role").getByText("Observing, 2 pages").waitFor();
+          for (const name of PANELS) await openPanel(observer, name);
+          assert.deepEqual(await violations(observer), []);
+        }, options))));
 }
 
 test("axe-core finds no violation beside a stopped server", () =>

@@ -60,8 +60,13 @@ test("a target typed in is reached; pause, play and reset", () =>
     await page.getByRole("button", { name: "Pause" }).click();
     await until(page, "!state.playing");
     const target = await moveTarget(page, "z", -0.1);
-    await page.waitForTimeout(300); // one that plays would have moved by now
-    assert.ok(apart((await state(page)).q, home) < 1e-12, "a paused servo rests");
+    await until(page, `Math.abs(state.target.position[2] - ${target[2]}) < 1e-9`);
+    const { time } = await state(page);
+    await page.waitForTimeout(300);
+    // Another message, whose state is newer than the wait.
+    await page.getByLabel("Inverse", { exact: true }).selectOption("damped");
+    await until(page, 'scene.method.name === "damped"');
+    assert.ok((await state(page)).time === time && apart((await state(page)).q, home) < 1e-12, "a paused servo rests");
     await page.getByRole("button", { name: "Play" }).click();
     await until(page, "state.playing");
     await untilReached(page, target);

@@ -73,12 +73,26 @@ for (const [width, height, looks] of SIZES) {
     }));
 }
 
-test("edges of controls and tracks of sliders have a contrast of 3 to 1", () =>
+/** Where there are such edges, all of them in sight of the test. */
+const PLACES = [".bar .button", ".float .button", ".side .field", ".side .switch", ".velocity", ".tree", ".companion .field", ".dock .select", ".dock .button", ".plots .button", ".chart-entry .stroke", "dialog .button"];
+const EDGES = ".button, .select, .field, .switch, .tree, .velocity, dialog.open";
+
+test("edges of controls, tracks of sliders and lines of plots have a contrast of 3 to 1", () =>
   visit(["panda"], async (page) => {
+    for (const name of ["servo", "model"]) await openPanel(page, name);
+    await page.evaluate(() => /** @type {any} */ (window).viewer.companions.add(null));
+    await page.locator(".companion [data-joint]").first().waitFor({ state: "attached" });
+    await page.getByRole("button", { name: "Record" }).click();
+    await moveTarget(page, "z", -0.05);
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    // One line of each colour.
+    await page.waitForFunction(() => document.querySelectorAll('[data-plot="joints"] .chart-entry').length >= 7);
+    await page.getByRole("button", { name: "Open a file" }).click();
+    await page.locator("dialog").getByText("Catalogue").waitFor();
     for (const dark of [false, true]) {
       await page.emulateMedia({ colorScheme: dark ? "dark" : "light" });
       await page.waitForFunction((theme) => document.documentElement.dataset["theme"] === theme, dark ? "dark" : "light");
-      const low = await page.evaluate(() => {
+      const low = await page.evaluate(([places, edges]) => {
         const context = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
         const luminance = (/** @type {string} */ colour) => {
           if (!context) return 0;
@@ -98,12 +112,17 @@ test("edges of controls and tracks of sliders have a contrast of 3 to 1", () =>
           }
           return "white";
         };
-        const found = [];
-        for (const element of document.querySelectorAll(".side .button, .bar .button, .select, .field, .switch, .float .button")) {
+        /** @type {string[]} */
+        const found = places.filter((place) => !document.querySelector(place)).map((place) => `no ${place}`);
+        for (const element of document.querySelectorAll(edges)) {
           const style = getComputedStyle(element);
           const edge = element.matches(".switch") ? style.backgroundColor : style.borderTopColor;
           const value = contrast(edge, behind(element.parentElement));
           if (!(/** @type {HTMLInputElement} */ (element).disabled) && value < 3) found.push(`${element.className} ${value.toFixed(2)}`);
+        }
+        for (const line of document.querySelectorAll(".chart-entry .stroke")) {
+          const value = contrast(getComputedStyle(line).borderTopColor, behind(line.parentElement));
+          if (value < 3) found.push(`line of a plot ${value.toFixed(2)}`);
         }
         // The track is a pseudo-element: its colour is asked for by an element that wears it.
         const probe = document.body.appendChild(document.createElement("i"));
@@ -114,7 +133,7 @@ test("edges of controls and tracks of sliders have a contrast of 3 to 1", () =>
         }
         probe.remove();
         return [...new Set(found)];
-      });
+      }, /** @type {const} */ ([PLACES, EDGES]));
       assert.deepEqual(low, [], dark ? "dark" : "light");
     }
   }));

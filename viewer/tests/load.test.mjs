@@ -2,11 +2,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { browserOfFile, openPanel, picture, ROBOTS, served, showOverlay, state } from "./lib.mjs";
+import { apart, browserOfFile, openPanel, picture, ROBOTS, served, showOverlay, state } from "./lib.mjs";
 
 const { look, visit } = browserOfFile();
 
 const BROKEN = fileURLToPath(new URL("robots/broken/broken.urdf", import.meta.url));
+const COLLISIONS = fileURLToPath(new URL("robots/collisions/collisions.urdf", import.meta.url));
 const SHAPES = fileURLToPath(new URL("robots/shapes/shapes.urdf", import.meta.url));
 
 /** @type {{ name: string, args: string[], dark?: boolean, show: string[] }[]} */
@@ -52,6 +53,31 @@ test("a mesh with vertices that are not finite is skipped, and the view stays", 
     await page.locator(".toast").waitFor();
     assert.match(await page.locator(".toast").innerText(), /2 shapes are missing.*(nan|index)\.obj: it has vertices that are not finite/s);
     assert.deepEqual(await emptyView(page), false, "the view shows nothing");
+  }));
+
+test("collision shapes are shown, their meshes too; a missing one becomes a sentence", () =>
+  visit([COLLISIONS], async (page) => {
+    await page.getByRole("switch", { name: "Collision shapes" }).check();
+    await page.locator(".toast").waitFor();
+    assert.match(await page.locator(".toast").innerText(), /A collision shape is missing.*lost:.*not_there\.stl/s);
+    const links = await page.evaluate(() => {
+      /** @type {any} */
+      const { collisions, stage } = /** @type {any} */ (window).viewer;
+      stage.scene.updateMatrixWorld();
+      return collisions.links.map((/** @type {any} */ link) => {
+        /** @type {number[]} */
+        const heights = [];
+        link.traverse((/** @type {any} */ part) => {
+          const places = part.geometry?.attributes.position;
+          for (let i = 0; places && i < places.count; i += 1) heights.push(link.position.clone().fromBufferAttribute(places, i).applyMatrix4(part.matrixWorld).z);
+        });
+        return heights.length > 0 ? [Math.min(...heights), Math.max(...heights)] : [];
+      });
+    });
+    assert.equal(links.length, 3);
+    // The mesh is 0.4 m high, halved, and stands 0.1 m above its link, which is at 0.5 m.
+    for (const [i, heights] of [[-0.05, 0.05], [0.6, 0.8], []].entries()) assert.ok(apart(links[i], heights) < 1e-6, `${links[i]}`);
+    await picture(page, "collision-shapes");
   }));
 
 test("at rest an open comparison asks no more", () =>

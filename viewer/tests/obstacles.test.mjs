@@ -41,6 +41,8 @@ test("bodies near each other are listed and connected while the panel is open", 
     assert.deepEqual(await shapes(), { shown: true, count: (await scene(page)).links.flatMap((link) => link.collisions).length });
     await panel.locator("summary").click();
     await until(page, "state.distances === null");
+    assert.equal((await shapes()).shown, true, "they are shown without distances");
+    await page.getByRole("switch", { name: "Collision shapes" }).uncheck();
     assert.equal((await shapes()).shown, false);
     assert.equal(await lines(page), 0);
   }));

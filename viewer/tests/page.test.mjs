@@ -173,19 +173,3 @@ async function drawnColours(page) {
     return colours;
   }));
 }
-
-test("the robot is saved as glTF as it is drawn, y upwards", () =>
-  visit(["panda"], async (page) => {
-    await untilReached(page, await moveTarget(page, "z", -0.05));
-    const file = Buffer.from(await saved(page, "glTF", "latin1"), "latin1");
-    assert.equal(file.toString("latin1", 0, 4), "glTF");
-    const { nodes, scenes } = JSON.parse(file.toString("utf8", 20, 20 + file.readUInt32LE(12)));
-    const root = nodes[scenes[0].nodes[0]];
-    assert.equal(root.name, "panda");
-    assert.ok(apart(root.matrix.slice(0, 12), [1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0]) < 1e-6);
-    const links = await page.evaluate(() => /** @type {any} */ (window).viewer.robot.links.map((/** @type {any} */ { frame }) => [frame.name, frame.position.toArray()]));
-    for (const [name, position] of links) {
-      const node = nodes.find((/** @type {any} */ one) => one.name === name);
-      assert.ok(apart(node.translation ?? node.matrix?.slice(12, 15) ?? [0, 0, 0], position) < 1e-6, name);
-    }
-  }));

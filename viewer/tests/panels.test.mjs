@@ -225,25 +225,80 @@ for (const folded of [false, true]) {
         }
         Object.assign(window, { seen });
       }, folded);
-      await untilReached(page, await (folded ? sendTarget(page) : moveTarget(page, "z", -0.08)));
+      await untilReached(page, await (folded ? sendTarget(page, -0.08) : moveTarget(page, "z", -0.08)));
       /** @type {{ states: number, work: number, changes: string[] }} */
-      const { states, work, changes } = await page.evaluate(() => /** @type {any} */ (window).seen);
-      t.diagnostic(`${(work / states).toFixed(2)} ms of JavaScript for a state, ${folded ? "panels folded" : "panels open"}`);
+      const { states, work: spent, changes } = await page.evaluate(() => /** @type {any} */ (window).seen);
+      t.diagnostic(`${(spent / states).toFixed(2)} ms of JavaScript for a state, ${folded ? "panels folded" : "panels open"}`);
       assert.ok(states > 5, `${states} states`);
       assert.deepEqual([...new Set(changes)], []);
+      await countWork(page);
+      await untilReached(page, await sendTarget(page, 0.08));
+      const work = await page.evaluate(() => /** @type {any} */ (window).work);
+      t.diagnostic(`${(work.calls / work.states).toFixed(1)} reads and writes of elements in panels for a state`);
+      assert.ok(work.states > 5, `${work.states} states`);
+      if (folded) assert.deepEqual([...new Set(work.of)], [], "work in folded panels");
+      else assert.ok(work.calls > 20 * work.states, `${work.calls} calls`);
     }));
+}
+
+/**
+ * Counts in `window.work` what the page reads and writes of elements in panels while it shows a state, new elements among them.
+ * @param {import("playwright-core").Page} page
+ */
+function countWork(page) {
+  return page.evaluate(() => {
+    /** @type {{ states: number, calls: number, of: string[] }} */
+    const work = { states: 0, calls: 0, of: [] };
+    let counts = false;
+    const { session } = /** @type {any} */ (window).viewer;
+    const emit = session.emit.bind(session);
+    session.emit = (/** @type {string} */ event, /** @type {unknown} */ value) => {
+      work.states += event === "state" ? 1 : 0;
+      counts = event === "state";
+      emit(event, value);
+      counts = false;
+    };
+    const note = (/** @type {any} */ node, /** @type {string} */ name) => {
+      if (!counts || !(node instanceof Node)) return;
+      const element = node instanceof Element ? node : node.parentElement;
+      const panel = element?.closest("[data-panel]")?.getAttribute("data-panel");
+      // An element that is made is nowhere yet; labels of the view are.
+      if (!panel || !element?.closest(".body")) return;
+      work.calls += 1;
+      work.of.push(`${name} in ${panel}`);
+    };
+    for (const [owner, ...names] of /** @type {[any, ...string[]][]} */ ([
+      [Node.prototype, "textContent", "appendChild"],
+      [Element.prototype, "setAttribute", "removeAttribute", "replaceChildren", "append", "className", "clientWidth"],
+      [HTMLElement.prototype, "style", "dataset", "hidden"],
+      [HTMLInputElement.prototype, "value", "checked"],
+    ])) {
+      for (const name of names) {
+        const { value, get, set, ...rest } = /** @type {PropertyDescriptor} */ (Object.getOwnPropertyDescriptor(owner, name));
+        const counted = (/** @type {Function} */ work) => function (/** @type {any[]} */ ...given) {
+          // @ts-expect-error: of the element
+          const node = this;
+          note(node, name);
+          return work.apply(node, given);
+        };
+        Object.defineProperty(owner, name, value ? { ...rest, value: counted(value) } : { configurable: true, enumerable: true, ...(get && { get: counted(get) }), ...(set && { set: counted(set) }) });
+      }
+    }
+    Object.assign(window, { work });
+  });
 }
 
 /**
  * Moves the target without the fields.
  * @param {import("playwright-core").Page} page
+ * @param {number} by along z (m)
  */
-function sendTarget(page) {
-  return page.evaluate(() => {
+function sendTarget(page, by) {
+  return page.evaluate((by) => {
     const { session } = /** @type {any} */ (window).viewer;
     const { position: [x, y, z], quaternion } = session.state.target;
-    const position = [x, y, z - 0.08];
+    const position = [x, y, z + by];
     session.send({ type: "target", position, quaternion });
     return position;
-  });
+  }, by);
 }

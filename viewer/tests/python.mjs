@@ -42,7 +42,11 @@ test("two pages follow a loop at 100 Hz", () =>
             /** @type {[number, number][]} */
             const seen = [];
             Object.assign(window, { seen });
-            session.on("state", (/** @type {any} */ { q }) => seen.push([Math.round(1e3 * q[0]), Date.now()]));
+            // As it comes, before it waits for a frame.
+            session.on("raw", (/** @type {string} */ raw) => {
+              const now = Date.now();
+              seen.push([Math.round(1e3 * JSON.parse(raw).q[0]), now]);
+            });
           });
         }
         on();
@@ -51,9 +55,12 @@ test("two pages follow a loop at 100 Hz", () =>
           await until(page, "Math.abs(state.q[0] - 0.499) < 1e-9");
           const seen = await page.evaluate(() => /** @type {[number, number][]} */ (/** @type {any} */ (window).seen));
           const late = seen.filter(([k]) => k > 0).map(([k, time]) => time - (times[k] ?? NaN)).sort((a, b) => a - b);
-          const share = (/** @type {number} */ of) => late[Math.floor(of * (late.length - 1))]?.toFixed(0);
-          console.log(`${late.length} of ${times.length} configurations drawn; late by ${share(0.5)} ms (median), ${share(0.95)} ms (95 %), ${share(1)} ms (most)`);
+          const share = (/** @type {number} */ of) => late[Math.floor(of * (late.length - 1))] ?? NaN;
+          const words = `${share(0.5).toFixed(0)} ms (median), ${share(0.95).toFixed(0)} ms (95 %), ${share(1).toFixed(0)} ms (most)`;
+          console.log(`${late.length} of ${times.length} configurations came; late by ${words}`);
           assert.ok(late.length > 10);
+          // Measured: about 10 ms. Another program may have the processor now and then, not most of the time.
+          assert.ok(share(0.5) < 50, words);
           assert.equal((await state(page)).servo.sentence, "A program sets the configuration.");
         }
         await picture(second, "python-loop");

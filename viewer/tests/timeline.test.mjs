@@ -4,7 +4,7 @@ import { mkdtemp, readFile, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { apart, browserOfFile, cylindroid, moveTarget, openFiles, openPanel, picture, saved, showOverlay, state, until, untilReached } from "./lib.mjs";
+import { apart, browserOfFile, cylindroid, enter, moveTarget, openFiles, openPanel, picture, saved, showOverlay, state, until, untilReached } from "./lib.mjs";
 
 const { visit } = browserOfFile();
 const folder = await mkdtemp(join(tmpdir(), "cylindroid-timeline-"));
@@ -86,6 +86,57 @@ test("a recording is scrubbed by keys, drawn as it was, and left; the robot does
     await untilMoment(page, "moment === null");
     assert.ok(apart(await drawn(page), end.links.flatMap((link) => link.position)) < 1e-4);
     await page.locator('[data-panel="mobility"] > .doubt').waitFor({ state: "hidden" });
+  }));
+
+test("a recording has the times of the server, also where the page stands still", () =>
+  visit(["panda"], async (page) => {
+    await page.getByRole("button", { name: "Record" }).click();
+    const goal = await moveTarget(page, "z", -0.15);
+    await page.evaluate(() => {
+      for (const end = performance.now() + 400; performance.now() < end;);
+    });
+    await untilReached(page, goal);
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    const { states, times } = JSON.parse(await saved(page, "Save the recording as JSON"));
+    const moving = states.slice(1).flatMap((/** @type {any} */ { time, clock }, /** @type {number} */ i) => {
+      assert.ok(Math.abs(times[i + 1] - times[i] - (clock - states[i].clock)) < 1e-9 && times[i + 1] > times[i]);
+      // Beyond a tenth of a second the servo does not catch up.
+      return states[i].servo.status === "moving" && clock - states[i].clock < 0.1 ? [Math.abs(times[i + 1] - times[i] - (time - states[i].time))] : [];
+    });
+    assert.ok(moving.length > 20 && moving.sort((/** @type {number} */ a, /** @type {number} */ b) => a - b)[Math.floor(0.9 * moving.length)] < 0.02, `${moving.slice(-5)}`);
+  }));
+
+test("undo and redo go through a recording that is shown, step by step, and move nothing", () =>
+  visit(["panda"], async (page) => {
+    const joint = async (/** @type {number} */ i, /** @type {number} */ value) => {
+      await enter(page.getByLabel(`panda_joint${i} as a number`), value);
+      await until(page, `Math.abs(state.q[${i - 1}] - ${value}) < 1e-9`);
+      await page.waitForTimeout(800);
+    };
+    await page.getByRole("button", { name: "Record" }).click();
+    const home = (await state(page)).q;
+    await joint(1, 0.4);
+    await joint(3, 0.3);
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    assert.equal(await page.locator(".dock-marks .mark-step").count(), 2);
+    await slider(page).focus();
+    await page.keyboard.press("End");
+    await untilMoment(page, "moment && Math.abs(moment.q[2] - 0.3) < 1e-9");
+    const [undo, redo] = ["Undo", "Redo"].map((name) => page.getByRole("button", { name: new RegExp(`^${name}`) }));
+    if (!undo || !redo) throw new Error("no buttons");
+    assert.equal(await redo.getAttribute("aria-disabled"), "true");
+    await undo.click();
+    await untilMoment(page, `Math.abs(moment.q[0] - 0.4) < 1e-9 && Math.abs(moment.q[2] - ${home[2]}) < 1e-9`);
+    await page.locator("canvas").focus();
+    await page.keyboard.press("Control+z");
+    await untilMoment(page, `Math.abs(moment.q[0] - ${home[0]}) < 1e-9`);
+    await redo.click();
+    await untilMoment(page, `Math.abs(moment.q[0] - 0.4) < 1e-9 && Math.abs(moment.q[2] - ${home[2]}) < 1e-9`);
+    assert.ok(Math.abs(((await state(page)).q[2] ?? 0) - 0.3) < 1e-9, "the robot stays");
+    // Back at the robot as it is, they move it.
+    await page.getByRole("button", { name: "live" }).click();
+    await undo.click();
+    await until(page, `Math.abs(state.q[2] - ${home[2]}) < 1e-9 && Math.abs(state.q[0] - 0.4) < 1e-9`);
   }));
 
 test("a recording plays to its end, in a loop, faster and slower", () =>
@@ -194,6 +245,10 @@ test("motions of move and CSV by the names of joints are opened, with what they 
     const names = head.split(",");
     await page.waitForFunction((count) => /** @type {any} */ (window).viewer.timeline.recording?.length === count, rows.length);
     const last = (rows.at(-1) ?? "").split(",").map(Number);
+    const bounded = rows.filter((row) => !row.endsWith(",")).length;
+    assert.ok(bounded > 0 && names.at(-1) === "limits");
+    const marks = await page.evaluate(() => [.../** @type {any} */ (window).viewer.timeline.recording.columns.marks.view()]);
+    assert.equal(marks.filter((mark) => mark & 1).length, bounded, "as many marks as rows with limits");
     await slider(page).focus();
     await page.keyboard.press("End");
     await untilMoment(page, `moment?.seq === ${rows.length - 1}`);
@@ -214,6 +269,16 @@ test("motions of move and CSV by the names of joints are opened, with what they 
     const { coordinates } = await page.evaluate(() => /** @type {any} */ (window).viewer.session.scene);
     const heads = coordinates.map((/** @type {any} */ { name }) => name).join(",");
     const zeros = coordinates.map(() => "0").join(",");
+    // Without velocities, they are differences.
+    await openFiles(page, await file("positions.csv", `time,${heads}\n0,${zeros}\n0.5,0.2${zeros.slice(1)}\n`));
+    await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.recording?.length === 2);
+    assert.deepEqual(await page.evaluate(() => /** @type {any} */ (window).viewer.timeline.recording.columns.rates.map((/** @type {any} */ rate) => rate.at(1))), [0.4, ...coordinates.slice(1).map(() => 0)]);
+    await page.locator('[data-plot="rates"]').getByText("differences of positions").waitFor();
+    await openFiles(page, csv);
+    await page.waitForFunction((count) => /** @type {any} */ (window).viewer.timeline.recording?.length === count, rows.length);
+    await slider(page).focus();
+    await page.keyboard.press("End");
+    await untilMoment(page, `moment?.seq === ${rows.length - 1}`);
     for (const [name, text, told] of /** @type {const} */ ([
       ["word.csv", `time,${heads}\n0,${zeros}\n0.1,${zeros.replace("0", "none")}\n`, /word\.csv, line 3: "none" in column panda_joint1 is not a number/],
       ["back.csv", `time,${heads}\n1,${zeros}\n0.5,${zeros}\n`, /back\.csv, line 3: its time is before/],
@@ -271,7 +336,7 @@ test("10 000 states are scrubbed", (t) =>
     await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.recording?.length === 10_000);
     t.diagnostic(`opened in ${((performance.now() - begin) / 1000).toFixed(1)} s`);
     await page.getByRole("button", { name: "Distances to limits" }).click();
-    const measured = await page.evaluate(async () => {
+    const { work, intervals, perFrame } = await page.evaluate(async () => {
       const { timeline, session } = /** @type {any} */ (window).viewer;
       let spent = 0;
       for (const [of, name] of [[timeline, "flush"], [timeline, "answered"], [timeline.player, "seek"], [session, "receive"]]) {
@@ -289,12 +354,26 @@ test("10 000 states are scrubbed", (t) =>
         while (timeline.wanted !== null || timeline.asking) await new Promise((resolve) => requestAnimationFrame(resolve));
         work.push(spent);
       }
-      return work.sort((a, b) => a - b);
+      // As one who drags the slider: another moment with every frame, whether the last one has come or not.
+      /** @type {{ interval: number, work: number }[]} */
+      const frames = [];
+      const frame = () => /** @type {Promise<number>} */ (new Promise((resolve) => requestAnimationFrame(resolve)));
+      let last = await frame();
+      for (let [i, end] = [0, last + 3000]; last < end; i += 1) {
+        spent = 0;
+        timeline.player.seek((i * 37) % 100);
+        const now = await frame();
+        frames.push({ interval: now - last, work: spent });
+        last = now;
+      }
+      return { work, intervals: frames.map(({ interval }) => interval), perFrame: frames.map((one) => one.work) };
     });
-    const at = (/** @type {number} */ share) => (measured[Math.floor(share * (measured.length - 1))] ?? NaN).toFixed(2);
+    const at = (/** @type {number[]} */ all, /** @type {number} */ share) => ([...all].sort((a, b) => a - b)[Math.floor(share * (all.length - 1))] ?? NaN).toFixed(2);
+    const words = (/** @type {number[]} */ all) => `${at(all, 0.5)} ms (median), ${at(all, 0.95)} ms (95 %)`;
+    t.diagnostic(`JavaScript for a state of 10 000: ${words(work)}, three plots`);
+    t.diagnostic(`scrubbed for 3 s: JavaScript for a frame ${words(perFrame)}; between ${intervals.length} frames ${words(intervals)}`);
     // A mark that the page keeps, with room for a machine that does other things.
-    assert.ok(Number(at(0.5)) < 5, `${at(0.5)} ms`);
-    t.diagnostic(`${at(0.5)} ms of JavaScript for a state of 10 000 (median), ${at(0.9)} ms (nine of ten), three plots`);
+    for (const all of [work, perFrame]) assert.ok(Number(at(all, 0.5)) < 5, words(all));
     await slider(page).focus();
     await page.keyboard.press("PageDown");
     await page.keyboard.press("ArrowRight");

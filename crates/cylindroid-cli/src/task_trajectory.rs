@@ -8,7 +8,7 @@ use cylindroid::{EndEffector, Mechanism, Result, State};
 use serde::Serialize;
 
 use crate::output;
-use crate::trajectory::{Format, joint_columns, save};
+use crate::trajectory::{ActiveLimit, Format, joint_columns, limits_cell, save};
 
 /// A trajectory of several tasks.
 #[derive(Debug, Serialize)]
@@ -43,6 +43,8 @@ pub(crate) struct TaskRow {
     pub(crate) tasks: Vec<TaskSample>,
     /// Of the nearest pair of bodies [m]; null beyond the margin, and where no distances are kept.
     pub(crate) nearest: Option<f64>,
+    /// That bound a joint velocity of the step.
+    pub(crate) limits: Vec<ActiveLimit>,
 }
 
 /// A task in a sample.
@@ -115,6 +117,7 @@ impl TaskTrajectory {
             joint_velocities: servo.joint_velocities().to_vec(),
             tasks: tasks.collect(),
             nearest: servo.near().iter().map(|near| near.distance).reduce(f64::min),
+            limits: servo.active_limits().map(ActiveLimit::from).collect(),
         });
     }
 
@@ -140,6 +143,7 @@ impl TaskTrajectory {
         if self.avoids {
             header.push("nearest".to_owned());
         }
+        header.push("limits".to_owned());
         csv.write_record(&header)?;
         for row in &self.samples {
             let mut numbers = vec![row.time];
@@ -150,7 +154,9 @@ impl TaskTrajectory {
                 numbers.extend([task.position_error, task.orientation_error, task.scale]);
             }
             let nearest = self.avoids.then(|| row.nearest.map_or(String::new(), |x| x.to_string()));
-            csv.write_record(numbers.iter().map(f64::to_string).chain(nearest))?;
+            let limits = limits_cell(&row.limits, &self.joint_names);
+            let cells = numbers.iter().map(f64::to_string).chain(nearest).chain([limits]);
+            csv.write_record(cells)?;
         }
         csv.flush()
     }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use cylindroid::control::TrajectorySample;
+use cylindroid::control::{LimitKind, TrajectorySample};
 use cylindroid::{Error, Mechanism, Result};
 use serde::Serialize;
 
@@ -39,6 +39,22 @@ pub(crate) struct Row {
     /// [rad]
     pub(crate) orientation_error: f64,
     pub(crate) singular_ratio: f64,
+    /// That bound a joint velocity of the step.
+    pub(crate) limits: Vec<ActiveLimit>,
+}
+
+/// A limit that bounds a joint velocity.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct ActiveLimit {
+    /// Index in the joint names.
+    pub(crate) coordinate: usize,
+    pub(crate) kind: &'static str,
+}
+
+impl From<(usize, LimitKind)> for ActiveLimit {
+    fn from((coordinate, kind): (usize, LimitKind)) -> Self {
+        Self { coordinate, kind: kind.name() }
+    }
 }
 
 /// The format of a file.
@@ -89,6 +105,7 @@ impl Trajectory {
             position_error: sample.step.position_error,
             orientation_error: sample.step.orientation_error,
             singular_ratio: sample.step.singular_ratio,
+            limits: sample.limits.iter().map(|limit| (*limit).into()).collect(),
         });
     }
 
@@ -105,7 +122,7 @@ impl Trajectory {
         let mut header = joint_columns(&self.joint_names);
         let rest = ["x", "y", "z", "qw", "qx", "qy", "qz"];
         header.extend(rest.map(str::to_owned));
-        let rest = ["position_error", "orientation_error", "singular_ratio"];
+        let rest = ["position_error", "orientation_error", "singular_ratio", "limits"];
         header.extend(rest.map(str::to_owned));
         csv.write_record(&header)?;
         for row in &self.samples {
@@ -116,7 +133,8 @@ impl Trajectory {
                 .chain(&row.position)
                 .chain(&row.quaternion)
                 .chain(&errors);
-            csv.write_record(numbers.map(f64::to_string))?;
+            let limits = limits_cell(&row.limits, &self.joint_names);
+            csv.write_record(numbers.map(f64::to_string).chain([limits]))?;
         }
         csv.flush()
     }
@@ -127,6 +145,13 @@ pub(crate) fn joint_columns(joint_names: &[String]) -> Vec<String> {
     let positions = joint_names.iter().map(|name| format!("q.{name}"));
     let velocities = joint_names.iter().map(|name| format!("velocity.{name}"));
     std::iter::once("time".to_owned()).chain(positions).chain(velocities).collect()
+}
+
+/// Limits in a cell: `shoulder velocity; elbow position`.
+pub(crate) fn limits_cell(limits: &[ActiveLimit], joint_names: &[String]) -> String {
+    let words =
+        limits.iter().map(|limit| format!("{} {}", joint_names[limit.coordinate], limit.kind));
+    words.collect::<Vec<_>>().join("; ")
 }
 
 /// Writes a file.

@@ -120,7 +120,7 @@ mod _core {
     #[pymodule_export]
     use crate::view::PyView;
     #[pymodule_export]
-    use crate::view::start::{has_page, start_view};
+    use crate::view::start::{close_views, has_page, start_view};
     #[pymodule_export]
     use crate::workspace_map::{PyWorkspaceMap, workspace_map};
     #[pymodule_export]

@@ -1,11 +1,18 @@
 """`show`: pages follow the program, the program learns what is dragged, and nobody else comes in."""
 
 import gc
+import os
 import queue
+import signal
+import socket
+import subprocess
+import sys
 import threading
 import time
 import urllib.error
+import urllib.parse
 import urllib.request
+import warnings
 
 import numpy as np
 import pytest
@@ -105,6 +112,24 @@ def test_joints_and_obstacles_are_dragged(view):
     page.until(lambda m: m["type"] == "state" and m["obstacles"][0]["position"] == [0, 0, 1])
     view.remove("ball")
     page.until(lambda m: m["type"] == "scene" and m["obstacles"] == [])
+
+
+def test_what_is_held_moves_the_target_and_self_motions_the_joints(view):
+    targets, joints = queue.Queue(), queue.Queue()
+    view.on_target(targets.put)
+    view.on_configuration(joints.put)
+    page = Page(view.url)
+    page.say(type="twist", linear=[0, 0.1, 0], angular=[0, 0, 0])
+    rested = page.until(lambda m: m["type"] == "state" and m["servo"]["status"] == "reached")
+    target = targets.get(timeout=PATIENCE)
+    while abs(target[1, 3] - rested["tool"]["position"][1]) > 1e-12:
+        last, target = target, targets.get(timeout=PATIENCE)
+        assert target[1, 3] > last[1, 3] - 1e-9
+    assert target[1, 3] > PANDA.fk(PANDA.home)[1, 3] + 0.01 and joints.empty()
+    page.say(type="null_space", rate=0.5)
+    while abs(joints.get(timeout=PATIENCE)[0] - PANDA.home[0]) < 0.05:
+        pass
+    assert targets.empty()
 
 
 def test_an_error_of_a_function_ends_nothing(view, monkeypatch):
@@ -258,3 +283,100 @@ def test_loops_may_be_open():
         page = Page(view.url)
         view.q = q
         assert not state_with(page, q)["closure_error"]["closed"]
+
+
+def test_who_lets_others_in_is_warned_and_told_their_address():
+    with pytest.warns(UserWarning, match="everyone on the network") as told:
+        view = cy.show(PANDA, open=False, host="0.0.0.0")
+    with view:
+        token = urllib.parse.urlsplit(view.url).path
+        assert urllib.parse.urlsplit(view.url_for_others).path == token
+        assert view.url.startswith("http://127.0.0.1:") and view.url_for_others in str(told[0].message)
+        assert told[0].filename == __file__
+        assert answer(view.url_for_others)[0] == 200
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with cy.show(PANDA, open=False) as view:
+            assert view.url_for_others is None
+
+
+#: A program with a view, which says its address and then does this.
+PROGRAM = """
+import sys, threading, time
+import cylindroid as cy
+view = cy.show(cy.load("panda"), open=False)
+view.on_target(lambda target: print("moved", flush=True))
+print(view.url, flush=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("end", "code"),
+    [
+        ("", 0),
+        ("sys.exit(3)", 3),
+        ("1 / 0", 1),
+        # The function still runs.
+        ("view.on_target(lambda target: time.sleep(1000)); sys.stdin.readline()", 0),
+        ("time.sleep(1000)", -signal.SIGTERM),
+    ],
+)
+def test_a_view_ends_with_its_program(end, code):
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    # What the program does at the end waits until it is told to.
+    command = [sys.executable, "-c", f"{PROGRAM}sys.stdin.readline()\n{end}"]
+    with subprocess.Popen(command, **pipes) as program:
+        url = program.stdout.readline().strip()
+        page = Page(url)
+        page.say(type="target", position=[0.4, 0.1, 0.5], quaternion=[0, 1, 0, 0])
+        assert program.stdout.readline() == "moved\n"
+        begin = time.monotonic()
+        program.stdin.write("\n")
+        program.stdin.flush()
+        if "readline" in end:
+            page.say(type="target", position=[0.4, 0.2, 0.5], quaternion=[0, 1, 0, 0])
+            assert program.stdout.readline() == "moved\n"
+            program.stdin.write("\n")
+            program.stdin.flush()
+        if code < 0:
+            program.terminate()
+        assert program.wait(PATIENCE) == code, program.stderr.read()
+        # One that waits for something, such as its function or a page, waits for more than this.
+        assert time.monotonic() - begin < 20
+    address = urllib.parse.urlsplit(url)
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection((address.hostname, address.port), timeout=PATIENCE)
+
+
+def test_a_thread_may_show_a_robot():
+    views = queue.Queue()
+    thread = threading.Thread(target=lambda: views.put(cy.show(PANDA, open=False)))
+    thread.start()
+    thread.join(PATIENCE)
+    # It outlives the thread.
+    with views.get(timeout=PATIENCE) as view:
+        page = Page(view.url)
+        view.q = PANDA.home + 0.1
+        state_with(page, PANDA.home + 0.1)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the browser is a script of a shell")
+def test_the_browser_opens_the_address(tmp_path):
+    browser, opened = tmp_path / "browser", tmp_path / "opened"
+    browser.write_text(f'#!/bin/sh\necho "$1" >> "{opened}"\n')
+    browser.chmod(0o755)
+    program = """
+import threading
+import cylindroid as cy
+views = [cy.show(cy.load("panda"))]
+thread = threading.Thread(target=lambda: views.append(cy.show(cy.load("ur5e"), open=True)))
+thread.start()
+thread.join()
+views[0].open()
+print(*[view.url for view in [*views, views[0]]], sep="\\n")
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program], env={**os.environ, "BROWSER": str(browser)},
+        capture_output=True, text=True, check=True, timeout=PATIENCE,
+    )
+    assert done.stdout.splitlines() == opened.read_text().splitlines()

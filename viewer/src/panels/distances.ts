@@ -23,22 +23,12 @@ export class Distances {
   private readonly kept = new Kept(this.list);
   private table: Grid | null = null;
 
-  /** Shows the collision shapes while the panel is open. */
-  private readonly shapes = h("input", { type: "checkbox", class: "switch", role: "switch", "data-collisions": "" });
-
-  constructor(private readonly session: Session, private readonly labels: Labels, private readonly redraw: () => void, showShapes: (shown: boolean) => void) {
-    this.panel.body.append(
-      fieldLine("Within", this.margin),
-      h("label", { class: "row" }, this.shapes, h("span", {}, "Collision shapes")),
-      this.list,
-    );
-    const show = (): void => showShapes(this.shapes.checked && this.panel.isOpen());
-    this.shapes.addEventListener("change", show);
+  constructor(private readonly session: Session, private readonly labels: Labels, private readonly redraw: () => void) {
+    this.panel.body.append(fieldLine("Within", this.margin), this.list);
     this.margin.show(MARGIN);
     this.panel.onToggle((open) => {
       this.ask();
       if (!open) this.clear();
-      show();
       this.redraw();
     });
   }

@@ -11,8 +11,9 @@ export class Collisions {
   private links: Group[] = [];
   private scene: Scene | null = null;
   private made = false;
+  private generation = 0;
 
-  constructor(private readonly changed: () => void) {
+  constructor(private readonly tell: { changed: () => void; problems: (sentences: string[]) => void }) {
     this.group.visible = false;
   }
 
@@ -21,15 +22,16 @@ export class Collisions {
     for (const link of this.links) discard(link);
     this.scene = scene;
     this.made = false;
+    this.generation += 1;
     this.links = scene.links.map(() => new Group());
     this.group.add(...this.links);
-    if (this.group.visible) this.make();
+    if (this.group.visible) void this.make();
   }
 
   show(shown: boolean): void {
     this.group.visible = shown;
-    if (shown && !this.made) this.make();
-    this.changed();
+    if (shown && !this.made) void this.make();
+    this.tell.changed();
   }
 
   place(state: State): void {
@@ -39,25 +41,29 @@ export class Collisions {
     });
   }
 
-  /** A mesh that is not to be had stays away: the panel lists its distances none the less. */
-  private make(): void {
+  /** A mesh that is not to be had stays away. */
+  private async make(): Promise<void> {
     this.made = true;
+    const { generation, links } = this;
+    const problems: string[] = [];
     const paint = glass("c-collision", 0.35);
     // Just before the shapes of the model, which are often the same.
     [paint.polygonOffset, paint.polygonOffsetFactor, paint.polygonOffsetUnits] = [true, -2, -2];
-    this.scene?.links.forEach((link, i) => {
-      for (const shape of link.collisions) {
-        paintedBody(shape, paint).then(
-          (body) => {
-            const holder = new Group();
-            setPose(holder, shape.pose);
-            holder.add(body);
-            this.links[i]?.add(holder);
-            this.changed();
-          },
-          () => undefined,
-        );
-      }
-    });
+    const work = (this.scene?.links ?? []).flatMap((link, i) =>
+      link.collisions.map(async (shape) => {
+        try {
+          const holder = new Group();
+          setPose(holder, shape.pose);
+          holder.add(await paintedBody(shape, paint));
+          if (generation !== this.generation) return;
+          links[i]?.add(holder);
+          this.tell.changed();
+        } catch (error) {
+          problems.push(`${link.name}: ${error instanceof Error ? error.message : String(error)}`);
+        }
+      }),
+    );
+    await Promise.all(work);
+    if (generation === this.generation) this.tell.problems(problems);
   }
 }

@@ -12,7 +12,10 @@ const HEIGHT = 138;
 /** Below the largest value a logarithmic plot ends. */
 const DECADES = 6;
 const COLOURS = ["c-velocity", "c-lost", "c-reciprocal", "c-principal", "c-active-force", "c-angular", "ink"];
-export const MARKS = [{ mark: SINGULAR, name: "singular", colour: "c-lost" }, { mark: AT_LIMIT, name: "limit", colour: "c-axes" }];
+export const MARKS = [
+  { mark: SINGULAR, name: "singular", colour: "c-lost", words: "a singular value is lost" },
+  { mark: AT_LIMIT, name: "limit", colour: "c-axes", words: "a limit bounds a joint" },
+];
 const STRIPE = 4;
 
 type Figure = { line: Line; value: HTMLElement };
@@ -42,7 +45,8 @@ export class Chart {
     const all = recording.scene.coordinates.length;
     const isPart = lines.length < all && lines.length === MOST_LINES;
     const units = [...new Set(lines.map((line) => this.unit(line)))].filter(Boolean);
-    text(this.note, present.length === 0 ? this.kind.none : `${units.length > 0 ? `[${units.join(", ")}]` : ""}${isPart ? ` ${lines.length} of ${all}, those that move most` : ""}`);
+    const words = [units.length > 0 && `[${units.join(", ")}]`, this.kind.remark?.(recording), isPart && `${lines.length} of ${all}, those that move most`];
+    text(this.note, present.length === 0 ? this.kind.none : words.filter(Boolean).join(" "));
     this.host.hidden = this.legend.hidden = present.length === 0;
     const width = this.element.clientWidth;
     if (present.length === 0 || width === 0) return;
@@ -72,8 +76,8 @@ export class Chart {
   }
 
   /** Lines in the order of the legend, for pictures. */
-  get entries(): { label: string; colour: string }[] {
-    return this.figures.map(({ line }, i) => ({ label: line.label, colour: colour(COLOURS[i % COLOURS.length] ?? "ink") }));
+  get entries(): { label: string; colour: string; isDashed: boolean }[] {
+    return this.figures.map(({ line }, i) => ({ label: line.label, colour: colour(COLOURS[i % COLOURS.length] ?? "ink"), isDashed: isDashed(line, i) }));
   }
 
   destroy(): void {
@@ -116,7 +120,7 @@ export class Chart {
         ...lines.map((line, i): uPlot.Series => ({
           label: line.label, scale: scaleOf(this.unit(line)), width: 1.5, points: { show: false }, spanGaps: false,
           stroke: () => colour(COLOURS[i % COLOURS.length] ?? "ink"),
-          ...(i >= COLOURS.length || line.label === "threshold" ? { dash: [5, 3] } : {}),
+          ...(isDashed(line, i) ? { dash: [5, 3] } : {}),
           ...(stepped ? { paths: stepped } : {}),
         })),
       ],
@@ -134,7 +138,7 @@ export class Chart {
     });
     this.figures = lines.map((line) => ({ line, value: h("span", { class: "number" }) }));
     this.legend.replaceChildren(...this.figures.map(({ line, value }, i) => {
-      const swatch = h("span", { class: i >= COLOURS.length || line.label === "threshold" ? "stroke dashed" : "stroke" });
+      const swatch = h("span", { class: isDashed(line, i) ? "stroke dashed" : "stroke" });
       swatch.style.setProperty("--swatch", `var(--${COLOURS[i % COLOURS.length] ?? "ink"})`);
       return h("span", { class: "chart-entry", "data-line": line.label }, swatch, line.label, " ", value);
     }));
@@ -155,6 +159,10 @@ export class Chart {
       }
     });
   }
+}
+
+function isDashed(line: Line, i: number): boolean {
+  return i >= COLOURS.length || line.label === "threshold";
 }
 
 function scaleOf(unit: string): string {

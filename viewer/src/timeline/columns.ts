@@ -4,6 +4,8 @@ import type { Scene, State } from "../protocol";
 /** Of a sample: a joint is at a limit or outside of it; a singular value is lost. */
 export const AT_LIMIT = 1;
 export const SINGULAR = 2;
+/** After it the user began something. */
+export const STEP = 4;
 
 /** Sliders round what they are given (s). */
 const ROUNDING = 1e-9;
@@ -23,6 +25,11 @@ export class Column {
     this.length += 1;
   }
 
+  /** Adds bits to the last number. */
+  mark(bits: number): void {
+    if (this.length > 0) this.values[this.length - 1] = this.at(this.length - 1) | bits;
+  }
+
   at(i: number): number {
     return this.values[i] ?? NaN;
   }
@@ -37,7 +44,9 @@ export class Column {
 export class Columns {
   readonly time = new Column();
   readonly q: Column[];
+  /** Where a sample has none, how fast the coordinates change since the one before. */
   readonly rates: Column[];
+  areDifferences = false;
   readonly margins: Column[];
   readonly errors = [new Column(), new Column()];
   readonly singular: Column[] = [];
@@ -51,11 +60,15 @@ export class Columns {
   }
 
   push(time: number, scene: Scene, state: State): void {
+    const [before, sinceLast] = [this.time.length - 1, time - this.time.at(this.time.length - 1)];
     this.time.push(time);
+    const rates = state.servo.joint_velocities;
+    this.areDifferences ||= rates === null;
     scene.coordinates.forEach(({ lower, upper }, i) => {
       const q = state.q[i] ?? NaN;
+      const way = q - (this.q[i]?.at(before) ?? NaN);
       this.q[i]?.push(q);
-      this.rates[i]?.push(state.servo.joint_velocities?.[i] ?? NaN);
+      this.rates[i]?.push(rates ? rates[i] ?? NaN : sinceLast > 0 ? way / sinceLast : NaN);
       const margin = Math.min(q - (lower ?? -Infinity), (upper ?? Infinity) - q);
       this.margins[i]?.push(Number.isFinite(margin) ? margin : NaN);
     });
@@ -81,6 +94,14 @@ export class Columns {
       else high = middle;
     }
     return low;
+  }
+
+  /** The sample before or after this one at which a step of the user began, or the end on that side. */
+  step(from: number, way: -1 | 1): number {
+    const end = way < 0 ? 0 : this.time.length - 1;
+    let i = from + way;
+    while ((end - i) * way > 0 && (this.marks.at(i) & STEP) === 0) i += way;
+    return (end - i) * way < 0 ? end : i;
   }
 
   /** Times from which and until which a mark is set. */

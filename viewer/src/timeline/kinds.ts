@@ -11,6 +11,8 @@ export type Kind = {
   per: "" | "/s";
   logarithmic: boolean;
   lines: (recording: Recording) => Line[];
+  /** Said beside the unit. */
+  remark?: (recording: Recording) => string;
   /** Said where no sample has a value. */
   none: string;
 };
@@ -20,7 +22,10 @@ export const MOST_LINES = 12;
 
 export const KINDS: Kind[] = [
   { name: "joints", title: "Joints", per: "", logarithmic: false, lines: (r) => ofCoordinates(r, r.columns.q), none: "The model has no coordinate." },
-  { name: "rates", title: "Joint velocities", per: "/s", logarithmic: false, lines: (r) => ofCoordinates(r, r.columns.rates), none: "The file contains no joint velocities." },
+  {
+    name: "rates", title: "Joint velocities", per: "/s", logarithmic: false, none: "No two samples are at different times.",
+    lines: (r) => ofCoordinates(r, r.columns.rates), remark: (r) => (r.columns.areDifferences ? "differences of positions" : ""),
+  },
   {
     name: "errors", title: "Error", per: "", logarithmic: false, none: "The file contains no errors.",
     lines: ({ columns }) => lines(["distance", "angle"], columns.errors, ["m", "rad"]),

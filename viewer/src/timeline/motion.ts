@@ -47,6 +47,7 @@ function fromCsv(name: string, text: string, scene: Scene): Motion {
   if (missing.length > 0) throw new Error(`${name}, line ${at + 1}: no column for ${list(missing)}; its columns are ${list(head)}.`);
   const rates = names.map((joint) => column(`velocity.${joint}`));
   const [time, position, orientation] = isHead ? ["time", "position_error", "orientation_error"].map((title) => column(title)) : [-1, -1, -1];
+  const limits = isHead ? column("limits") : -1;
   const wanted = [...places, ...rates, time, position, orientation].filter((place): place is number => place !== undefined && place >= 0);
   const samples: Sample[] = [];
   let first = 0;
@@ -68,7 +69,7 @@ function fromCsv(name: string, text: string, scene: Scene): Motion {
       q: places.map((place) => Number(row[place])),
       joint_velocities: all.every((rate) => rate !== null) ? all : null,
       error: { position: number(position), orientation: number(orientation) },
-      target: null, limits: [],
+      target: null, limits: limitsIn(row[limits] ?? "", names),
     });
     check(samples, () => `${name}, line ${i + 1}`);
   }
@@ -117,7 +118,7 @@ function fromJson(name: string, text: string, scene: Scene): Motion {
       joint_velocities: rates === null ? null : numbers(rates, "joint_velocities"),
       error: errorOf(sample),
       target: poseOf(sample["target"]),
-      limits: limitsOf(servo["limits"], places),
+      limits: limitsOf(sample["limits"] ?? servo["limits"], places),
     });
     check(samples, () => place);
   });
@@ -149,6 +150,15 @@ function limitsOf(value: unknown, places: number[]): ActiveLimit[] {
     const { coordinate, kind } = object(limit);
     const own = typeof coordinate === "number" ? places.indexOf(coordinate) : -1;
     return own >= 0 ? [{ coordinate: own, kind: String(kind) }] : [];
+  });
+}
+
+/** Of a cell: `shoulder velocity; elbow position`. */
+function limitsIn(cell: string, names: string[]): ActiveLimit[] {
+  return cell.split(";").flatMap((words) => {
+    const [, name = "", kind = ""] = /^(.*) (\w+)$/.exec(words.trim()) ?? [];
+    const coordinate = names.indexOf(name);
+    return coordinate >= 0 ? [{ coordinate, kind }] : [];
   });
 }
 

@@ -3,7 +3,7 @@ import { h, type Child } from "../dom";
 import { panel } from "../panels/panel";
 import { colour, onTheme } from "../theme";
 import { inUnits } from "../units";
-import { Chart } from "./chart";
+import { Chart, MARKS } from "./chart";
 import { KINDS } from "./kinds";
 import type { Recording } from "./recording";
 
@@ -36,8 +36,7 @@ export class Plots {
       h("div", { class: "row" },
         h("span", { class: "chips", role: "group", "aria-label": "Plots shown" }, ...chips),
         saves.length > 0 && h("span", { class: "group", role: "group", "aria-label": "Save" }, ...saves), after),
-      h("p", { class: "note marks" },
-        h("span", { class: "mark singular" }), "a singular value is lost ", h("span", { class: "mark limit" }), "a joint is at a limit"),
+      h("p", { class: "note marks" }, ...MARKS.flatMap(({ name, words }) => [h("span", { class: `mark ${name}` }), `${words} `])),
       this.list,
     );
     for (const name of SHOWN_FIRST) this.add(name);
@@ -79,10 +78,22 @@ export class Plots {
     const font = `${11 * scale}px system-ui, sans-serif`;
     context.font = font;
     const legends = shown.map(({ chart }) => legendOf(context, chart.entries, width, scale));
+    const marks = legendOf(context, MARKS.map(({ words, colour: name }) => ({ label: words, colour: colour(name), isDashed: false })), width, scale);
     canvas.width = width;
-    canvas.height = shown.reduce((sum, one, i) => sum + one.canvas.height + title + line * rowsOf(legends[i]), 0);
+    canvas.height = shown.reduce((sum, one, i) => sum + one.canvas.height + title + line * rowsOf(legends[i]), line * rowsOf(marks));
     context.fillStyle = colour("panel");
     context.fillRect(0, 0, canvas.width, canvas.height);
+    const write = (legend: Entry[], from: number): void => {
+      context.font = font;
+      for (const { label, ink, isDashed, x, row } of legend) {
+        context.fillStyle = ink;
+        for (const [at, wide] of isDashed ? [[0, 5], [8, 4]] as const : [[0, 12]] as const) {
+          context.fillRect(x + at * scale, from + row * line + 5 * scale, wide * scale, 3 * scale);
+        }
+        context.fillStyle = colour("ink");
+        context.fillText(label, x + 16 * scale, from + row * line + 11 * scale);
+      }
+    };
     let y = 0;
     for (const [i, { chart, canvas: drawn }] of shown.entries()) {
       const legend = legends[i] ?? [];
@@ -91,15 +102,10 @@ export class Plots {
       context.fillText(chart.element.querySelector("figcaption")?.textContent ?? "", 8 * scale, y + 15 * scale);
       context.drawImage(drawn, 0, y + title);
       y += title + drawn.height;
-      context.font = font;
-      for (const { label, ink, x, row } of legend) {
-        context.fillStyle = ink;
-        context.fillRect(x, y + row * line + 5 * scale, 12 * scale, 3 * scale);
-        context.fillStyle = colour("ink");
-        context.fillText(label, x + 16 * scale, y + row * line + 11 * scale);
-      }
+      write(legend, y);
       y += line * rowsOf(legend);
     }
+    write(marks, y);
     return new Promise((resolve, reject) => canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be encoded"))), "image/png"));
   }
 
@@ -126,20 +132,31 @@ export class Plots {
   }
 }
 
+type Entry = { label: string; ink: string; isDashed: boolean; x: number; row: number };
+
 /** Rows of a legend, one at least. */
-function rowsOf(legend: { row: number }[] = []): number {
+function rowsOf(legend: Entry[] = []): number {
   return (legend.at(-1)?.row ?? 0) + 1;
 }
 
-/** Where the names of lines are in a picture: in rows that end within its width. */
-function legendOf(context: CanvasRenderingContext2D, entries: { label: string; colour: string }[], width: number, scale: number): { label: string; ink: string; x: number; row: number }[] {
-  const [left, gap] = [52 * scale, 14 * scale];
+/** Where the names of lines are in a picture: in rows that end within its width; the end of a longer name is left out. */
+function legendOf(context: CanvasRenderingContext2D, entries: { label: string; colour: string; isDashed: boolean }[], width: number, scale: number): Entry[] {
+  const [left, gap, swatch] = [52 * scale, 14 * scale, 16 * scale];
   let [x, row] = [left, 0];
-  return entries.map(({ label, colour: ink }) => {
-    const wide = 16 * scale + context.measureText(label).width;
+  return entries.map(({ label: whole, colour: ink, isDashed }) => {
+    const label = shortened(context, whole, width - left - swatch);
+    const wide = swatch + context.measureText(label).width;
     if (x > left && x + wide > width) [x, row] = [left, row + 1];
-    const place = { label, ink, x, row };
+    const place = { label, ink, isDashed, x, row };
     x += wide + gap;
     return place;
   });
+}
+
+/** As much of a text as this width has room for. */
+function shortened(context: CanvasRenderingContext2D, text: string, width: number): string {
+  if (context.measureText(text).width <= width) return text;
+  let length = text.length;
+  while (length > 0 && context.measureText(`${text.slice(0, length)}…`).width > width) length -= 1;
+  return `${text.slice(0, length)}…`;
 }

@@ -11,6 +11,8 @@ export class Recording {
   private readonly raws: string[] = [];
   /** Each from its first state on. */
   private readonly scenes: { from: number; scene: Scene }[] = [];
+  /** Of the session at time 0 (s). */
+  private began: number | null = null;
 
   /** `file`: the name of the file that it was read from. */
   constructor(scene: Scene, readonly file: string | null = null) {
@@ -35,6 +37,14 @@ export class Recording {
   changeScene(scene: Scene): void {
     if (this.scenes.at(-1)?.from === this.length) this.scenes.pop();
     this.scenes.push({ from: this.length, scene });
+  }
+
+  /** A state of the session, as text: when it was computed counts, not when it came. */
+  takeLive(raw: string, state = JSON.parse(raw) as State): void {
+    this.began ??= state.clock;
+    // The clock of a server that was restarted begins anew.
+    if (state.clock - this.began < this.duration) this.began = state.clock - this.duration;
+    this.take(state.clock - this.began, raw, state);
   }
 
   /** A state as text, `time` after the first (s). */
@@ -88,7 +98,7 @@ export class Recording {
     const pose = (name: string): string[] => ["x", "y", "z", "qw", "qx", "qy", "qz"].map((part) => `${name}_${part}`);
     const head = [
       "time", ...coordinates.map(({ name }) => name), ...coordinates.map(({ name }) => `velocity.${name}`), ...pose("tool"), ...pose("target"),
-      "position_error", "orientation_error", "smallest_over_largest", "rank", "status",
+      "position_error", "orientation_error", "smallest_over_largest", "rank", "status", "limits",
     ];
     const lines = this.raws.map((raw, i) => {
       const state = JSON.parse(raw) as State;
@@ -97,6 +107,7 @@ export class Recording {
         ...state.tool.position, ...state.tool.quaternion,
         ...state.target.position, ...state.target.quaternion, state.error.position, state.error.orientation,
         state.singular?.ratio, state.singular?.rank, state.servo.status,
+        state.servo.limits.map(({ coordinate, kind }) => `${coordinates[coordinate]?.name} ${kind}`).join("; "),
       ].map(cell).join(",");
     });
     return new Blob([[head.map(cell).join(","), ...lines].join("\r\n"), "\r\n"], { type: "text/csv" });

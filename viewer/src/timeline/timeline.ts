@@ -4,6 +4,7 @@ import type { Posture, Scene, State, ToServer } from "../protocol";
 import type { Session } from "../session";
 import { Dock } from "./dock";
 import { Elsewhere } from "./elsewhere";
+import { STEP } from "./columns";
 import { readMotion, type Motion, type Sample } from "./motion";
 import { Player } from "./player";
 import { Plots } from "./plots";
@@ -14,6 +15,8 @@ import { Trail } from "./trail";
 type Told = {
   /** Another moment, or the robot as it is, is to be drawn. */
   redraw: () => void;
+  /** Another moment, or the robot as it is, is wanted. */
+  moved: () => void;
   /** A frame is wanted. */
   wake: () => void;
   say: (words: string, bad?: boolean) => void;
@@ -43,7 +46,6 @@ export class Timeline {
   private readonly elsewhere: Elsewhere;
   private recording: Recording | null = null;
   private records = false;
-  private began = 0;
   private showsTrail = true;
   /** The moment that is shown, if it is not the robot as it is. */
   private current: (Moment & { index: number }) | null = null;
@@ -88,6 +90,31 @@ export class Timeline {
     return this.records;
   }
 
+  /** The user began something: a mark of the recording. */
+  noteStep(): void {
+    if (this.records) this.recording?.columns.marks.mark(STEP);
+  }
+
+  /** Where a recording is shown, whether a step of the user lies before or after that moment. */
+  get steps(): { before: boolean; after: boolean } | null {
+    const { recording, here } = this;
+    return recording && here !== null ? { before: here > 0, after: here < recording.length - 1 } : null;
+  }
+
+  /** Where a recording is shown, shows the moment before a step of the user, or after it; false elsewhere. */
+  step(way: -1 | 1): boolean {
+    const { recording, here } = this;
+    if (!recording || here === null) return false;
+    this.player.pause();
+    this.player.seek(recording.columns.time.at(recording.columns.step(here, way)));
+    return true;
+  }
+
+  /** The moment that is shown or will be. */
+  private get here(): number | null {
+    return this.isWanted ? this.wanted ?? this.current?.index ?? null : null;
+  }
+
   owns(id: unknown): boolean {
     return this.elsewhere.owns(id);
   }
@@ -101,9 +128,8 @@ export class Timeline {
     if (!scene || !state) return;
     this.live();
     this.records = this.session.eager = true;
-    this.began = performance.now();
     this.replace(new Recording(scene));
-    this.recording?.take(0, JSON.stringify(state), state);
+    this.recording?.takeLive(JSON.stringify(state), state);
     this.grow();
   }
 
@@ -220,6 +246,7 @@ export class Timeline {
     this.wanted = index;
     this.isWanted = true;
     if (this.awaited && index !== this.awaited.index) this.end(false);
+    this.tell.moved();
     this.tell.wake();
   }
 
@@ -230,6 +257,7 @@ export class Timeline {
     this.isWanted = false;
     const left = this.current !== null;
     this.current = null;
+    this.tell.moved();
     return left;
   }
 
@@ -249,7 +277,7 @@ export class Timeline {
   private take(raw: string): void {
     const { recording } = this;
     if (!this.records || !recording) return;
-    recording.take((performance.now() - this.began) / 1000, raw);
+    recording.takeLive(raw);
     if (recording.isFull) {
       this.stop();
       this.tell.say(`The recording has ${MOST} states and has stopped; save it, or record again.`);
@@ -327,7 +355,7 @@ export class Timeline {
 function stateOf(i: number, sample: Sample, posture: Posture, file: string, takesTarget: boolean): State {
   const { time, error, joint_velocities, limits } = sample;
   return {
-    type: "state", seq: i, time, ack: null, playing: false,
+    type: "state", seq: i, time, clock: time, ack: null, playing: false,
     target: (takesTarget ? sample.target : null) ?? posture.tool,
     error,
     servo: { status: "paused", reason: null, sentence: `Sample ${i + 1} of ${file}.`, limits, pair: null, self_motion: 0, joint_velocities, twist: null },

@@ -94,8 +94,9 @@ pub(crate) struct MoveArgs {
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_hyphen_values = true)]
     pub(crate) time_limit: f64,
 
-    /// Write the motion: time, q, joint velocities, pose, errors, singular value ratio of every step;
-    /// with several tasks the poses, errors and scales of all, and the nearest distance
+    /// Write the motion: time, q, joint velocities, pose, errors, singular value ratio of every step,
+    /// and the limits that bound a joint; with several tasks the poses, errors and scales of all, and
+    /// the nearest distance
     #[arg(long, value_name = "FILE.csv|FILE.json")]
     pub(crate) out: Option<PathBuf>,
 

@@ -163,23 +163,21 @@ fn extension(path: &Path) -> Option<String> {
     path.extension().and_then(OsStr::to_str).map(str::to_ascii_lowercase)
 }
 
-/// The names of all visual meshes and the files that were found.
+/// The names of all meshes, of visual and of collision shapes, and the files that were found.
 fn meshes(mechanism: &Mechanism) -> impl Iterator<Item = (&str, Option<&Path>)> {
-    let visuals = mechanism.links().iter().flat_map(|l| &l.visuals);
-    visuals.filter_map(|v| match &v.geometry {
+    let shapes = mechanism.links().iter().flat_map(|link| {
+        let collisions = link.collisions.iter().map(|shape| &shape.geometry);
+        link.visuals.iter().map(|shape| &shape.geometry).chain(collisions)
+    });
+    shapes.filter_map(|geometry| match geometry {
         Geometry::Mesh { uri, path, .. } => Some((uri.as_str(), path.as_deref())),
         _ => None,
     })
 }
 
-/// The files of all meshes that were found, those of collision shapes as well.
+/// The files of all meshes that were found.
 pub(super) fn mesh_files(mechanism: &Mechanism) -> impl Iterator<Item = &Path> {
-    let collisions = mechanism.links().iter().flat_map(|l| &l.collisions);
-    let collisions = collisions.filter_map(|c| match &c.geometry {
-        Geometry::Mesh { path, .. } => path.as_deref(),
-        _ => None,
-    });
-    meshes(mechanism).filter_map(|(_, path)| path).chain(collisions)
+    meshes(mechanism).filter_map(|(_, path)| path)
 }
 
 /// The folder of the package that `package://NAME/rest` was found in.
@@ -257,6 +255,32 @@ mod tests {
         assert!(url.starts_with("/mesh/0/meshes/a%20b.stl?changed="), "{url}");
         let now = later.since(SystemTime::now() + std::time::Duration::from_secs(60));
         assert!(!now.served("a", Some(&folder.join("meshes/a b.stl"))).url.unwrap().contains('?'));
+    }
+
+    /// The package of a mesh that only collision shapes have.
+    #[test]
+    fn packages_of_collision_meshes_are_open() {
+        let all = tempfile::tempdir().unwrap();
+        for folder in ["robot", "bodies/meshes"] {
+            fs::create_dir_all(all.path().join(folder)).unwrap();
+        }
+        fs::write(all.path().join("bodies/package.xml"), "<package/>").unwrap();
+        fs::write(all.path().join("bodies/meshes/a.stl"), "").unwrap();
+        let model = all.path().join("robot/robot.urdf");
+        let text = r#"<robot name="r"><link name="base"><collision><geometry>
+            <mesh filename="package://bodies/meshes/a.stl"/></geometry></collision></link>
+            <link name="tool"/><joint name="j" type="continuous"><parent link="base"/>
+            <child link="tool"/><axis xyz="0 0 1"/></joint></robot>"#;
+        fs::write(&model, text).unwrap();
+        let model = model.to_str().unwrap();
+        let robot = cylindroid::load(model).unwrap();
+        let folders = Folders::of(&robot, model, &[]).unwrap();
+        let Geometry::Mesh { uri, path, .. } = &robot.links()[0].collisions[0].geometry else {
+            panic!("{robot:?}");
+        };
+        let served = folders.served(uri, path.as_deref());
+        assert_eq!(served.problem, None);
+        assert!(served.url.unwrap().ends_with("/meshes/a.stl"));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::avoidance::{GAP, MARGIN};
 use super::client_view::ClientView;
 use super::compare::compare;
-use super::elsewhere::states;
+use super::elsewhere::Elsewhere;
 use super::inverse_parameters::invert_by;
 use super::messages::{Complaint, Message, Request, TargetPose, TwistCommand};
 use super::names::Overlay;
@@ -28,6 +28,8 @@ pub(super) enum Reply {
     Scene,
     /// This text.
     Text(String),
+    /// Postures, to be computed in pieces.
+    States(Elsewhere),
     /// A report, to be computed in the background.
     Report(Report),
     /// The client has drawn this state.
@@ -106,7 +108,7 @@ fn obey(
             view.overlays = all;
         }
         Message::Compare(asked) => return compare(session, &asked, id).map(Reply::Text),
-        Message::States(asked) => return states(session, view, &asked, id).map(Reply::Text),
+        Message::States(asked) => return Elsewhere::new(asked, id).map(Reply::States),
         Message::Report(asked) => {
             return Report::new(session, &asked.name, id).map(Reply::Report);
         }

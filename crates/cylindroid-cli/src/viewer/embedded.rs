@@ -53,6 +53,7 @@ pub struct ShowOptions {
 pub struct Viewer {
     shared: Arc<SharedSession>,
     url: String,
+    url_for_others: Option<String>,
     /// `None` once it is closed.
     runtime: Mutex<Option<Runtime>>,
 }
@@ -92,9 +93,9 @@ impl Viewer {
             let server = Server::of(start, Some(Arc::clone(&shared)), place).await;
             Ok::<_, Error>((shared, server.map_err(failed)?))
         })?;
-        let url = server.url();
+        let (url, url_for_others) = (server.url(), server.url_for_others());
         runtime.spawn(server.serve_on());
-        Ok(Self { shared, url, runtime: Mutex::new(Some(runtime)) })
+        Ok(Self { shared, url, url_for_others, runtime: Mutex::new(Some(runtime)) })
     }
 
     /// True if the page is a part of this library; otherwise only the protocol is served.
@@ -106,6 +107,12 @@ impl Viewer {
     /// The address of the page, with the token.
     pub fn url(&self) -> &str {
         &self.url
+    }
+
+    /// The address of the page for other machines, with the token; `None` if only this one reaches
+    /// it.
+    pub fn url_for_others(&self) -> Option<&str> {
+        self.url_for_others.as_deref()
     }
 
     /// The number of pages that show it.

@@ -1,6 +1,7 @@
 //! Messages of a client without a socket: what fuzz targets feed, and tests of what they found.
 
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use cylindroid::catalogue;
 
@@ -40,13 +41,17 @@ pub(crate) fn feed(bytes: &[u8]) {
         let answer = match reply {
             Ok(Reply::Scene) => text(&Scene::of(&session)),
             Ok(Reply::Report(report)) => report.text(),
+            Ok(Reply::States(mut asked)) => {
+                asked.advance(&mut session, &view, Duration::MAX).unwrap_or_default()
+            }
             Ok(Reply::Text(text)) => text,
             Ok(_) => "done".to_owned(),
             Err(complaint) => text(&complaint),
         };
         assert!(!answer.is_empty(), "no answer to {line}");
         session.advance(STEPS);
-        let common = Common::of(&mut session);
+        let clock = session.time();
+        let common = Common::of(&mut session, clock);
         // A state that cannot be computed (overflow) is skipped, as it is for clients.
         let _ = snapshot(&mut session, &common, &view, 1);
         check(&session, line);

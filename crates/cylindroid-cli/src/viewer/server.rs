@@ -10,7 +10,7 @@ use axum::extract::{DefaultBodyLimit, Path, State};
 use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use axum::serve::ListenerExt;
+use axum::serve::{ListenerExt, TapIo};
 use axum::{Router, middleware};
 use cylindroid::model::read_regular_file;
 use serde::Serialize;
@@ -143,13 +143,16 @@ impl Server {
             .with_state(self.shared.clone());
         let guarded = Guard { names: self.names, frame_ancestors: self.frame_ancestors };
         let router = router.layer(middleware::from_fn_with_state(guarded, guard));
-        axum::serve(self.listener.tap_io(without_delay), router).await
+        axum::serve(without_delay(self.listener), router).await
     }
 }
 
-/// Small messages leave at once; a client that is gone shows when it is written to.
-fn without_delay(stream: &mut TcpStream) {
-    let _ = stream.set_nodelay(true);
+/// Small messages of its connections leave at once.
+fn without_delay(listener: TcpListener) -> TapIo<TcpListener, fn(&mut TcpStream)> {
+    // A client that is gone shows when it is written to.
+    listener.tap_io(|stream| {
+        let _ = stream.set_nodelay(true);
+    })
 }
 
 async fn session(State(shared): State<Shared>, uri: Uri, upgrade: WebSocketUpgrade) -> Response {
@@ -297,6 +300,7 @@ mod tests {
     use std::thread;
     use std::time::{Duration, Instant};
 
+    use axum::serve::Listener;
     use cylindroid::catalogue;
     use tungstenite::{Message, WebSocket, client};
 
@@ -310,6 +314,17 @@ mod tests {
         let stream = TcpStream::connect(url.split('/').nth(2).unwrap()).unwrap();
         stream.set_read_timeout(Some(WAIT)).unwrap();
         client(url.replacen("http", "ws", 1) + "ws", stream).unwrap().0
+    }
+
+    #[test]
+    fn small_messages_leave_at_once() {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+            let _client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+            let (stream, _) = without_delay(listener).accept().await;
+            assert!(stream.nodelay().unwrap());
+        });
     }
 
     /// One client reads, and by that answers pings; the other is gone, but its connection is not.

@@ -2,9 +2,11 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::thread::available_parallelism;
 
 use axum::extract::ws::Utf8Bytes;
 use cylindroid::Result;
+use tokio::sync::Semaphore;
 
 use super::session::Session;
 use super::shared_session::SharedSession;
@@ -22,6 +24,8 @@ pub(super) struct Sessions {
     /// The one of a program, which all clients join that name no other.
     of_program: Option<Arc<SharedSession>>,
     clients: Arc<AtomicUsize>,
+    /// Half of the processors compute reports; the others have the sockets and servos.
+    reports: Arc<Semaphore>,
 }
 
 #[derive(Debug)]
@@ -78,13 +82,15 @@ impl Drop for Place {
 
 impl Sessions {
     pub(super) fn new(start: Arc<Start>, of_program: Option<Arc<SharedSession>>) -> Self {
-        Self { known: Known::of(start), of_program, clients: Arc::default() }
+        let processors = available_parallelism().map_or(1, usize::from);
+        let reports = Arc::new(Semaphore::new((processors / 2).max(1)));
+        Self { known: Known::of(start), of_program, clients: Arc::default(), reports }
     }
 
-    /// Those of another model, beside these: all clients together have their places.
+    /// Those of another model, beside these: all clients together have their places and reports.
     pub(super) fn beside(&self, start: Start) -> Self {
-        let clients = Arc::clone(&self.clients);
-        Self { known: Known::of(Arc::new(start)), of_program: None, clients }
+        let (clients, reports) = (Arc::clone(&self.clients), Arc::clone(&self.reports));
+        Self { known: Known::of(Arc::new(start)), of_program: None, clients, reports }
     }
 
     fn known(&self) -> MutexGuard<'_, Known> {
@@ -127,6 +133,11 @@ impl Sessions {
         let more = |n| (n < MOST_CLIENTS).then_some(n + 1);
         self.clients.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).ok()?;
         Some(Place(Arc::clone(&self.clients)))
+    }
+
+    /// The places of reports that are computed at the same time, in the order they are asked for.
+    pub(super) fn reports(&self) -> Arc<Semaphore> {
+        Arc::clone(&self.reports)
     }
 
     /// The session of this name, begun if nobody holds it; without a name that of the program, or

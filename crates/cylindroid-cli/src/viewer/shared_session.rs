@@ -18,6 +18,7 @@ use super::client_view::ClientView;
 use super::dispatcher::{Reply, handle};
 use super::drags::{Drag, Drags, Moves};
 use super::drawings::Drawings;
+use super::elsewhere::Elsewhere;
 use super::json::text;
 use super::mailbox::{Mailbox, Numbered};
 use super::messages::{Complaint, Request};
@@ -54,6 +55,7 @@ pub(super) struct Inner {
     next: u64,
     driver: Option<u64>,
     seq: u64,
+    began: Instant,
     /// True if the session changed since the last state.
     is_dirty: bool,
     /// Time of the last servo update, if it is moving.
@@ -122,6 +124,7 @@ impl SharedSession {
             next: 0,
             driver: None,
             seq: 0,
+            began: Instant::now(),
             is_dirty: true,
             last: None,
             owed: Duration::ZERO,
@@ -283,6 +286,7 @@ async fn keep_time(shared: Weak<SharedSession>, changed: Arc<Notify>) {
         let Some(shared) = shared.upgrade() else { return };
         due = due.max(tokio::time::Instant::now() - TURN) + TURN;
         shared.lock().turn();
+        shared.dragged.notify_all();
     }
 }
 
@@ -297,7 +301,11 @@ impl Inner {
             let steps = self.owed.as_nanos() / step.as_nanos();
             let steps = u32::try_from(steps).unwrap_or(0);
             self.owed -= step * steps;
-            self.is_dirty |= self.session.advance(u64::from(steps));
+            let moves = Moves::by_steps(&self.session);
+            if self.session.advance(u64::from(steps)) {
+                self.is_dirty = true;
+                self.tell_program(moves);
+            }
             self.last = Some(now);
         }
         if !self.session.is_moving() {
@@ -308,15 +316,24 @@ impl Inner {
         }
     }
 
+    /// Gives the program what has been moved by hand.
+    fn tell_program(&mut self, moves: Option<Moves>) {
+        if let (Some(program), Some(moves)) = (&mut self.program, moves)
+            && let Some(drag) = moves.drag(&self.session)
+        {
+            program.drags.put(drag);
+        }
+    }
+
     fn publish(&mut self) {
         self.seq += 1;
-        let Self { session, clients, seq, program, .. } = self;
+        let Self { session, clients, seq, began, program, .. } = self;
         if let Some(program) = program.as_mut().filter(|program| program.is_redrawn) {
             program.is_redrawn = false;
             let drawings = Utf8Bytes::from(program.drawings.text());
             clients.values().for_each(|client| client.mailbox.put_drawings(drawings.clone()));
         }
-        let common = Common::of(session);
+        let common = Common::of(session, began.elapsed().as_secs_f64());
         let mut made: Vec<(&ClientView, Utf8Bytes)> = Vec::new();
         for client in clients.values() {
             let known = made.iter().find(|(view, _)| **view == client.view);
@@ -352,6 +369,16 @@ impl Membership {
         done
     }
 
+    /// Computes for so long; gives the answer once it is there.
+    pub(super) fn compute(&self, asked: &mut Elsewhere, share: Duration) -> Option<String> {
+        let mut inner = self.shared.lock();
+        let Inner { session, clients, .. } = &mut *inner;
+        match clients.get(&self.id) {
+            Some(client) => asked.advance(session, &client.view, share),
+            None => Some(String::new()),
+        }
+    }
+
     fn attempt(
         &self,
         inner: &mut Inner,
@@ -367,12 +394,8 @@ impl Membership {
         let Inner { session, clients, .. } = inner;
         let Some(client) = clients.get_mut(&self.id) else { return Ok(Reply::Nothing) };
         let reply = handle(session, &mut client.view, request);
-        if let (Some(program), Some(moves)) = (&mut inner.program, moves)
-            && let Some(drag) = moves.drag(&inner.session)
-        {
-            program.drags.put(drag);
-            self.shared.dragged.notify_all();
-        }
+        inner.tell_program(moves);
+        self.shared.dragged.notify_all();
         match reply {
             Ok(Reply::Scene) => inner.show_scene(),
             Ok(Reply::Drive(on))
@@ -395,5 +418,55 @@ impl Drop for Membership {
             inner.driver = None;
         }
         self.shared.tell_roles(&inner);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cylindroid::catalogue;
+
+    use super::*;
+    use crate::viewer::messages::read;
+    use crate::viewer::start::StartBodies;
+
+    /// How long the next state takes.
+    async fn state(mailbox: &Mailbox) -> Duration {
+        let begin = tokio::time::Instant::now();
+        loop {
+            while mailbox.first().is_some() {}
+            if mailbox.state().is_some() {
+                return begin.elapsed();
+            }
+            mailbox.arrived().await;
+        }
+    }
+
+    /// The clock stands still while a task has something to do.
+    #[tokio::test(start_paused = true)]
+    async fn states_come_at_once_after_a_pause_and_once_a_turn_otherwise() {
+        let robot = catalogue::load("panda").unwrap();
+        let (q, tool) = (robot.home().to_vec(), robot.tool().into());
+        let start = Start::new((robot, "panda"), &q, tool, &[], StartBodies::default()).unwrap();
+        let shared = SharedSession::begin(Arc::new(start), None, None).unwrap();
+        let mailbox = Arc::new(Mailbox::default());
+        let membership = shared.join(Arc::clone(&mailbox), false);
+        state(&mailbox).await;
+        let say = |value: f64| {
+            let name = "panda_joint1";
+            let message = format!(r#"{{"type": "joint", "name": "{name}", "value": {value}}}"#);
+            membership.obey(read(&message).unwrap()).unwrap();
+        };
+        for _ in 0..3 {
+            tokio::time::sleep(Duration::from_secs(1)).await;
+            assert!(mailbox.state().is_none());
+            say(0.1);
+            assert_eq!(state(&mailbox).await, Duration::ZERO);
+            let mut others = Duration::ZERO;
+            for value in [0.2, 0.3, 0.4] {
+                say(value);
+                others += state(&mailbox).await;
+            }
+            assert!((TURN..4 * TURN).contains(&others), "{others:?}");
+        }
     }
 }

@@ -18,6 +18,8 @@ use crate::commands::move_to::sentences::cause;
 pub(super) struct StateJson<'a> {
     seq: u64,
     time: f64,
+    /// Since the session began (s).
+    clock: f64,
     #[cfg_attr(test, ts(type = "string | number | null"))]
     ack: Option<&'a Value>,
     playing: bool,
@@ -70,21 +72,23 @@ struct LimitJson {
 /// The parts of a state that are computed once for all clients.
 #[derive(Debug)]
 pub(super) struct Common {
+    /// Since the session began (s).
+    clock: f64,
     servo: ServoJson,
     measures: Option<Measures>,
 }
 
 impl Common {
-    pub(super) fn of(session: &mut Session) -> Self {
+    pub(super) fn of(session: &mut Session, clock: f64) -> Self {
         let servo = servo(session);
-        Self { servo, measures: Measures::of(session) }
+        Self { clock, servo, measures: Measures::of(session) }
     }
 }
 
 /// The message `state` for a client.
 pub(super) fn snapshot(
     session: &mut Session,
-    Common { servo, measures }: &Common,
+    Common { clock, servo, measures }: &Common,
     view: &ClientView,
     seq: u64,
 ) -> Result<String> {
@@ -94,6 +98,7 @@ pub(super) fn snapshot(
     Ok(text(&StateJson {
         seq,
         time,
+        clock: *clock,
         ack: view.ack.as_ref(),
         playing,
         target,
@@ -105,6 +110,8 @@ pub(super) fn snapshot(
 
 fn servo(session: &Session) -> ServoJson {
     let last = session.last();
+    // A program that moves the robot does not say how fast.
+    let rates = session.joint_velocities().filter(|_| !session.is_followed());
     let told = |status, reason, sentence: String| ServoJson {
         status,
         reason,
@@ -112,7 +119,7 @@ fn servo(session: &Session) -> ServoJson {
         limits: limits(session),
         pair: last.and_then(|last| last.pair.clone()),
         self_motion: session.self_motion(),
-        joint_velocities: session.joint_velocities().map(<[f64]>::to_vec),
+        joint_velocities: rates.map(<[f64]>::to_vec),
         twist: session.twist().map(Twist::to_array),
     };
     if let Some(fault) = session.fault() {

@@ -1,7 +1,8 @@
 //! One client: its messages go to the session, answers and the newest state to the client.
 //!
 //! One task reads, another writes. A client that sends much yields to the others after each share
-//! of work.
+//! of work, in the midst of a message that asks for many postures too. Reports wait for one of the
+//! processors that compute them.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -11,8 +12,8 @@ use axum::body::Bytes;
 use axum::extract::ws::{CloseFrame, Message as Frame, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
-use tokio::sync::{mpsc, watch};
-use tokio::task::{JoinSet, yield_now};
+use tokio::sync::{Semaphore, mpsc, watch};
+use tokio::task::{JoinSet, spawn_blocking, yield_now};
 use tokio::time::{sleep_until, timeout};
 
 use super::dispatcher::Reply;
@@ -22,11 +23,11 @@ use super::messages::{Complaint, LARGEST, read};
 use super::sessions::{Asked, Sessions};
 use super::shared_session::Membership;
 
-/// Maximum number of unread answers; one more ends the connection.
+/// Maximum number of unread answers; the next message waits until one is read.
 const ANSWERS: usize = 64;
 /// Maximum number of states in transit to a client that sends `seen`.
 const UNSEEN: usize = 2;
-/// Maximum number of concurrent reports.
+/// Maximum number of reports of a client in progress.
 const REPORTS: usize = 4;
 /// A client that receives nothing for this long is disconnected.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -53,6 +54,7 @@ pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked, si
     let (sink, stream) = socket.split();
     let mailbox = Arc::new(Mailbox::default());
     let (answers, waiting) = mpsc::channel(ANSWERS);
+    let places = sessions.reports();
     let (seen, drawn) = watch::channel(None);
     let mut writer =
         tokio::spawn(write(sink, Arc::clone(&mailbox), waiting, (drawn, silence.ping)));
@@ -60,7 +62,8 @@ pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked, si
         Ok(shared) => {
             let membership = shared.join(mailbox, asked.observes);
             drop(shared);
-            let mut client = Client { membership, answers, seen, reports: JoinSet::new() };
+            let reports = JoinSet::new();
+            let mut client = Client { membership, answers, seen, places, reports };
             tokio::select! {
                 () = client.serve(stream, silence.most) => {}
                 _ = &mut writer => return,
@@ -83,7 +86,9 @@ struct Client {
     membership: Membership,
     answers: mpsc::Sender<Frame>,
     seen: watch::Sender<Option<u64>>,
-    reports: JoinSet<String>,
+    /// Of the reports of all clients that are computed at the same time.
+    places: Arc<Semaphore>,
+    reports: JoinSet<Option<String>>,
 }
 
 impl Client {
@@ -97,7 +102,7 @@ impl Client {
                     Some(Ok(frame)) => {
                         silent = tokio::time::Instant::now() + silence;
                         let begin = Instant::now();
-                        let heard = self.hear(&frame);
+                        let heard = self.hear(&frame).await;
                         work += begin.elapsed();
                         heard
                     }
@@ -109,7 +114,10 @@ impl Client {
                 },
                 () = sleep_until(silent) => return,
                 Some(report) = self.reports.join_next(), if !self.reports.is_empty() => {
-                    report.map_or(Ok(()), |report| self.answer(report))
+                    match report.ok().flatten() {
+                        Some(report) => self.answer(report).await,
+                        None => Ok(()),
+                    }
                 }
             };
             if done.is_err() {
@@ -122,7 +130,7 @@ impl Client {
         }
     }
 
-    fn hear(&mut self, frame: &Frame) -> Result<(), Gone> {
+    async fn hear(&mut self, frame: &Frame) -> Result<(), Gone> {
         let said = match frame {
             Frame::Text(said) if said.len() > LARGEST => Err(Complaint::new(
                 "message",
@@ -141,28 +149,42 @@ impl Client {
         };
         match said.and_then(|request| self.membership.obey(request)) {
             Ok(Reply::Nothing | Reply::Scene | Reply::Drive(_)) => Ok(()),
-            Ok(Reply::Text(text)) => self.answer(text),
+            Ok(Reply::Text(text)) => self.answer(text).await,
+            Ok(Reply::States(mut asked)) => loop {
+                if let Some(text) = self.membership.compute(&mut asked, SHARE) {
+                    break self.answer(text).await;
+                }
+                yield_now().await;
+            },
             Ok(Reply::Seen(seq)) => {
                 self.seen.send_replace(Some(seq));
                 Ok(())
             }
             Ok(Reply::Report(report)) if self.reports.len() < REPORTS => {
-                self.reports.spawn_blocking(move || report.text());
+                let places = Arc::clone(&self.places);
+                self.reports.spawn(async move {
+                    let place = places.acquire_owned().await.ok()?;
+                    let compute = move || {
+                        let _place = place;
+                        report.text()
+                    };
+                    spawn_blocking(compute).await.ok()
+                });
                 Ok(())
             }
             Ok(Reply::Report(report)) => {
                 let what = format!("{REPORTS} reports are in progress");
                 let complaint = Complaint::new("report", "report", &what, "wait for one of them");
                 let reply_to = report.reply_to().cloned();
-                self.answer(text(&Complaint { reply_to, ..complaint }))
+                self.answer(text(&Complaint { reply_to, ..complaint })).await
             }
-            Err(complaint) => self.answer(text(&complaint)),
+            Err(complaint) => self.answer(text(&complaint)).await,
         }
     }
 
-    /// A client that does not read its answers counts as disconnected.
-    fn answer(&self, text: String) -> Result<(), Gone> {
-        self.answers.try_send(Frame::Text(text.into())).map_err(|_| Gone)
+    /// Waits while too many answers are unread.
+    async fn answer(&self, text: String) -> Result<(), Gone> {
+        self.answers.send(Frame::Text(text.into())).await.map_err(|_| Gone)
     }
 
     /// Closes with a reason if the client violated the protocol (message too long).

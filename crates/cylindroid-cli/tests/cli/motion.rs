@@ -145,12 +145,29 @@ fn files_hold_every_step() {
             "position_error",
             "orientation_error",
             "singular_ratio",
+            "limits",
         ]
     );
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     assert_eq!(rows.len() as u64, report["steps"].as_u64().unwrap() + 1);
-    let last: Vec<f64> = rows.last().unwrap().iter().map(|x| x.parse().unwrap()).collect();
+    let numbers_of = |row: &csv::StringRecord| -> Vec<f64> {
+        row.iter().take(row.len() - 1).map(|x| x.parse().unwrap()).collect()
+    };
+    let last = numbers_of(rows.last().unwrap());
     assert!(difference(&last[1..7], &numbers(&report["q"])) < 2e-15, "full precision");
+    let mut limits: Vec<String> = rows
+        .iter()
+        .flat_map(|row| row[23].split("; ").map(str::to_owned).collect::<Vec<_>>())
+        .filter(|limit| !limit.is_empty())
+        .collect();
+    limits.sort();
+    limits.dedup();
+    let hit = report["limits_hit"].as_array().unwrap().iter().map(|limit| {
+        format!("{} {}", limit["joint"].as_str().unwrap(), limit["kind"].as_str().unwrap())
+    });
+    let mut hit: Vec<String> = hit.collect();
+    hit.sort();
+    assert!(!hit.is_empty() && limits == hit, "{limits:?} {hit:?}");
 
     let drawing = std::fs::read_to_string(&svg).unwrap();
     assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>"));

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import secrets
 import sys
+import threading
+import time
+import warnings
 import webbrowser
 from collections.abc import Sequence
+from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ._core import Mechanism, View, has_page, start_view
+from ._core import Mechanism, View, close_views, has_page, start_view
 from ._errors import ArgumentTypeError, CylindroidError
 
 #: The pages of Jupyter and of editors on this machine.
 _NOTEBOOKS = "http://localhost:* http://127.0.0.1:* https://localhost:* vscode-webview:"
 
+#: Longest wait for functions that run when the program ends [s].
+_PATIENCE = 2.0
+
 _NO_PAGE = (
     "this build of cylindroid has no page: run `cargo xtask viewer` in its source (it needs "
     "Node.js), then install it again"
+)
+
+_FOR_OTHERS = (
+    "everyone on the network who has the address {} can drive the robot on the page, and reads the "
+    "meshes and images in the folders of the model; without `host` only this machine can"
 )
 
 
@@ -55,7 +68,8 @@ def show(
     height : int
         Of the page below a cell (pixels).
     host : str
-        Any other than 127.0.0.1 and ::1 allows access from other machines.
+        Any other than 127.0.0.1 and ::1 allows access from other machines, with a warning; 0.0.0.0
+        are all addresses of this one. `url_for_others` of the view is the address for them.
     port : int
         0 selects a free one.
     meshes : sequence of path
@@ -73,6 +87,11 @@ def show(
     DimensionError, NotFiniteError, UnknownNameError
     InvalidOptionError
         For an address where the server cannot listen.
+
+    Warns
+    -----
+    UserWarning
+        If other machines reach the page.
 
     Examples
     --------
@@ -97,6 +116,8 @@ def show(
         frame_ancestors = _NOTEBOOKS
     token = secrets.token_urlsafe(24)
     view = start_view(mechanism, q, frame, tool, meshes, host, port, token, frame_ancestors)
+    if view.url_for_others:
+        warnings.warn(_FOR_OTHERS.format(view.url_for_others), UserWarning, stacklevel=2)
     if open:
         view.open(height)
     return view
@@ -116,3 +137,37 @@ def open_page(url: str, height: int) -> None:
         display(IFrame(url, "100%", height))
     elif not webbrowser.open(url):
         print(f"no browser was found; the page is at {url}")
+
+
+#: Each calls the functions of a view.
+_threads: list[threading.Thread] = []
+_process = os.getpid()
+
+
+def start_calls(calls: Any) -> None:
+    """Calls the functions of a view in a thread, until the view is closed."""
+    thread = threading.Thread(target=_call, args=(calls,), name="cylindroid-view", daemon=True)
+    _threads[:] = [other for other in _threads if other.is_alive()]
+    _threads.append(thread)
+    thread.start()
+
+
+def _call(calls: Any) -> None:
+    for function, arguments in calls:
+        try:
+            function(*arguments)
+        except BaseException as error:  # the next calls are made none the less
+            calls.failed(function, error)
+        del function, arguments
+
+
+@atexit.register
+def _end() -> None:
+    """Ends what waits for a page before Python is gone."""
+    # A process that was forked has none of the threads.
+    if os.getpid() != _process:
+        return
+    close_views()
+    end = time.monotonic() + _PATIENCE
+    for thread in _threads:
+        thread.join(max(0.0, end - time.monotonic()))

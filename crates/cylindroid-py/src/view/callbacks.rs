@@ -1,11 +1,12 @@
 //! Functions of Python that are called when somebody moves something on a page.
 
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
-use std::thread;
 use std::time::Duration;
 
 use cylindroid_cli::show::{Drag, Viewer};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use crate::arrays;
 
@@ -38,58 +39,101 @@ impl Callbacks {
     }
 
     /// Calls this function from now on, in a thread of its own.
-    pub(super) fn add(self: &Arc<Self>, viewer: &Arc<Viewer>, moved: Moved, function: Py<PyAny>) {
+    pub(super) fn add(
+        self: &Arc<Self>,
+        py: Python<'_>,
+        viewer: &Arc<Viewer>,
+        moved: Moved,
+        function: Py<PyAny>,
+    ) -> PyResult<()> {
         let mut functions = self.lock();
         match moved {
             Moved::Target => functions.target.push(function),
             Moved::Configuration => functions.configuration.push(function),
             Moved::Obstacle => functions.obstacle.push(function),
         }
-        if !functions.is_running {
-            functions.is_running = true;
-            let (own, viewer) = (Arc::clone(self), Arc::downgrade(viewer));
-            thread::spawn(move || own.run(&viewer));
-        }
-    }
-
-    /// Until the viewer is closed, or Python ends.
-    fn run(&self, viewer: &Weak<Viewer>) {
-        // The viewer is held while it is waited for: closing it wakes.
-        while let Some(drags) = viewer.upgrade().and_then(|viewer| viewer.next_drags(PATIENCE)) {
-            let called = drags.iter().map(|drag| Python::try_attach(|py| self.call(py, drag)));
-            if called.flatten().count() < drags.len() {
-                return;
-            }
-        }
-        // Functions may hold the view, whose cycle ends here.
-        let functions = std::mem::take(&mut *self.lock());
-        let _ = Python::try_attach(|_| drop(functions));
-    }
-
-    fn call(&self, py: Python<'_>, drag: &Drag) {
-        let copies = |all: &[Py<PyAny>]| all.iter().map(|f| f.clone_ref(py)).collect::<Vec<_>>();
+        let is_running = std::mem::replace(&mut functions.is_running, true);
         // The lock is free while Python runs.
-        let functions = match drag {
-            Drag::Target(_) => copies(&self.lock().target),
-            Drag::Configuration(_) => copies(&self.lock().configuration),
-            Drag::Obstacle { .. } => copies(&self.lock().obstacle),
-            _ => Vec::new(),
+        drop(functions);
+        if !is_running {
+            let viewer = Arc::downgrade(viewer);
+            let calls = Calls { callbacks: Arc::clone(self), viewer, waiting: Mutex::default() };
+            py.import("cylindroid._show")?.call_method1("start_calls", (calls,))?;
+        }
+        Ok(())
+    }
+
+    /// The functions for this drag, with their arguments.
+    fn calls(&self, py: Python<'_>, drag: &Drag) -> PyResult<Vec<Call>> {
+        let copies = |all: &[Py<PyAny>]| all.iter().map(|f| f.clone_ref(py)).collect::<Vec<_>>();
+        let (functions, arguments) = match drag {
+            Drag::Target(pose) => {
+                (copies(&self.lock().target), (arrays::pose(py, *pose)?,).into_pyobject(py)?)
+            }
+            Drag::Configuration(q) => {
+                (copies(&self.lock().configuration), (arrays::vector(py, q),).into_pyobject(py)?)
+            }
+            Drag::Obstacle { name, pose } => {
+                let arguments = (name, arrays::pose(py, *pose)?).into_pyobject(py)?;
+                (copies(&self.lock().obstacle), arguments)
+            }
+            _ => return Ok(Vec::new()),
         };
-        for function in functions {
-            let told = || -> PyResult<()> {
-                match drag {
-                    Drag::Target(pose) => function.call1(py, (arrays::pose(py, *pose)?,))?,
-                    Drag::Configuration(q) => function.call1(py, (arrays::vector(py, q),))?,
-                    Drag::Obstacle { name, pose } => {
-                        function.call1(py, (name, arrays::pose(py, *pose)?))?
-                    }
-                    _ => return Ok(()),
-                };
-                Ok(())
+        Ok(functions.into_iter().map(|f| (f, arguments.clone().unbind())).collect())
+    }
+}
+
+/// A function and its arguments.
+type Call = (Py<PyAny>, Py<PyTuple>);
+
+/// The calls to be made, one after the other; waits for each until the viewer is closed.
+///
+/// Python makes them: at the end of a program it ends threads that wait for it, which no frame of
+/// Rust below the function would survive.
+#[pyclass(frozen)]
+#[derive(Debug)]
+struct Calls {
+    callbacks: Arc<Callbacks>,
+    viewer: Weak<Viewer>,
+    waiting: Mutex<VecDeque<Call>>,
+}
+
+impl Calls {
+    fn waiting(&self) -> MutexGuard<'_, VecDeque<Call>> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl Calls {
+    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Call>> {
+        loop {
+            let next = self.waiting().pop_front();
+            if next.is_some() {
+                return Ok(next);
+            }
+            // The viewer is held while it is waited for: closing it wakes.
+            let wait = || self.viewer.upgrade().and_then(|viewer| viewer.next_drags(PATIENCE));
+            let Some(drags) = py.detach(wait) else {
+                // Functions may hold the view, whose cycle ends here.
+                let functions = std::mem::take(&mut *self.callbacks.lock());
+                drop(functions);
+                return Ok(None);
             };
-            if let Err(error) = told() {
-                error.write_unraisable(py, Some(function.bind(py)));
+            for drag in &drags {
+                let calls = self.callbacks.calls(py, drag)?;
+                self.waiting().extend(calls);
             }
         }
+    }
+
+    /// Says that a function has failed; the next calls are made none the less.
+    #[expect(clippy::unused_self, reason = "a method in Python")]
+    fn failed(&self, py: Python<'_>, function: &Bound<'_, PyAny>, error: Bound<'_, PyAny>) {
+        PyErr::from_value(error).write_unraisable(py, Some(function));
     }
 }

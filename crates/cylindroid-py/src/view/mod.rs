@@ -44,6 +44,8 @@ const LOOK: Duration = Duration::from_millis(50);
 ///     True if the servo of the page moves the robot to the target.
 /// url : str
 ///     The address of the page. It contains a secret: who knows it may drive the robot on the page.
+/// url_for_others : str or None
+///     The same for other machines; None if only this one reaches the page, see `host` of `show`.
 /// pages : int
 ///     Number of pages that show it at this moment.
 /// closed : bool
@@ -54,16 +56,20 @@ pub(crate) struct PyView {
     callbacks: Arc<Callbacks>,
     mechanism: Mechanism,
     url: String,
+    url_for_others: Option<String>,
     /// Pages that there had been when the last wait for them ended.
     waited_for: AtomicU64,
 }
 
 impl PyView {
     fn new(mechanism: Mechanism, viewer: Viewer) -> Self {
-        let (url, viewer) = (viewer.url().to_owned(), Arc::new(viewer));
+        let url = viewer.url().to_owned();
+        let url_for_others = viewer.url_for_others().map(str::to_owned);
+        let viewer = Arc::new(viewer);
         OPEN.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(&viewer));
         let viewer = Mutex::new(Some(viewer));
-        Self { viewer, callbacks: Arc::default(), mechanism, url, waited_for: AtomicU64::new(0) }
+        let (callbacks, waited_for) = (Arc::default(), AtomicU64::new(0));
+        Self { viewer, callbacks, mechanism, url, url_for_others, waited_for }
     }
 
     fn open_viewer(&self) -> Option<Arc<Viewer>> {
@@ -89,7 +95,7 @@ impl PyView {
             return Err(Failure::kind(format!("function: {what} cannot be called")));
         }
         let own = slf.get();
-        own.callbacks.add(&own.viewer()?, moved, function.clone_ref(py));
+        own.callbacks.add(py, &own.viewer()?, moved, function.clone_ref(py))?;
         Ok(function)
     }
 }
@@ -153,6 +159,11 @@ impl PyView {
     #[getter]
     fn url(&self) -> &str {
         &self.url
+    }
+
+    #[getter]
+    fn url_for_others(&self) -> Option<&str> {
+        self.url_for_others.as_deref()
     }
 
     #[getter]
@@ -309,7 +320,8 @@ impl PyView {
         Ok(self.viewer()?.remove(name)?)
     }
 
-    /// Calls a function when somebody drags the target on a page; may be used as a decorator.
+    /// Calls a function when somebody drags the target on a page, or moves it with the tool by
+    /// *Hold to move*; may be used as a decorator.
     ///
     /// Parameters
     /// ----------
@@ -326,7 +338,8 @@ impl PyView {
         Self::call(slf, Moved::Target, function)
     }
 
-    /// Calls a function when somebody moves joints on a page; may be used as a decorator.
+    /// Calls a function when somebody moves joints on a page, by a self-motion as well; may be used
+    /// as a decorator.
     ///
     /// Parameters
     /// ----------

@@ -1,11 +1,12 @@
 //! Starts the viewer of a mechanism.
 
 use std::path::PathBuf;
+use std::sync::PoisonError;
 
 use cylindroid_cli::show::{ShowOptions, Viewer};
 use pyo3::prelude::*;
 
-use super::PyView;
+use super::{OPEN, PyView};
 use crate::arrays::Numbers;
 use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
@@ -43,6 +44,15 @@ pub(crate) fn start_view(
         frame_ancestors,
     };
     Ok(PyView::new(mechanism, py.detach(|| Viewer::new(options))?))
+}
+
+/// Closes all views, at the end of the program.
+#[pyfunction]
+pub(crate) fn close_views(py: Python<'_>) {
+    py.detach(|| {
+        let views = std::mem::take(&mut *OPEN.lock().unwrap_or_else(PoisonError::into_inner));
+        views.iter().for_each(|viewer| viewer.close());
+    });
 }
 
 /// True if the page of the viewer is a part of this build.

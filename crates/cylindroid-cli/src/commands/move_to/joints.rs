@@ -29,12 +29,17 @@ pub(super) fn simulate(
         servo.reset();
         let last = servo.step(&q, job.target_pose)?;
         min_singular_ratio = min_singular_ratio.min(last.singular_ratio);
-        observe(TrajectorySample { time, q: &q, joint_velocities: &rates, step: &last });
-        for (i, (coordinate, rate)) in job.robot.coordinates().iter().zip(&rates).enumerate() {
-            if rate.abs() >= AT_SPEED * coordinate.limits.velocity {
-                limits_hit.insert((i, LimitKind::Velocity));
-            }
-        }
+        let all = job.robot.coordinates().iter().zip(&rates).enumerate();
+        let is_fast = all.filter(|(_, (c, rate))| rate.abs() >= AT_SPEED * c.limits.velocity);
+        let limits: Vec<_> = is_fast.map(|(i, _)| (i, LimitKind::Velocity)).collect();
+        observe(TrajectorySample {
+            time,
+            q: &q,
+            joint_velocities: &rates,
+            step: &last,
+            limits: &limits,
+        });
+        limits_hit.extend(limits);
         let reached = time >= motion.law().duration();
         if reached || time >= job.time_limit {
             let stall = None;

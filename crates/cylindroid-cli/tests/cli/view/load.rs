@@ -1,14 +1,15 @@
 //! Many clients at once.
 
-use std::fs;
+use std::net::Shutdown;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
+use std::{fs, io};
 
 use serde_json::json;
-use tungstenite::Message;
+use tungstenite::{Error, Message};
 
-use super::{Client, Server};
+use super::{Client, Server, WAIT};
 
 const CLIENTS: usize = 20;
 
@@ -140,6 +141,13 @@ impl Waits {
         self.0[((self.0.len() - 1) as f64 * share) as usize]
     }
 
+    /// How much longer than others at the same shares of all.
+    fn beyond(&self, others: &Self) -> Self {
+        let count = self.0.len() as f64;
+        let longer = |(i, wait): (usize, &f64)| wait - others.share((i as f64 + 0.5) / count);
+        Self(self.0.iter().enumerate().map(longer).collect())
+    }
+
     fn longest(&self) -> f64 {
         self.share(1.0)
     }
@@ -183,47 +191,79 @@ fn machine(stop: &AtomicBool) -> Vec<f64> {
     waits
 }
 
-/// Sends as fast as it can and never reads, until it is stopped.
-fn flood(mut client: Client, message: &str, stop: &AtomicBool) {
-    while !stop.load(Ordering::Relaxed) {
-        if client.socket.send(Message::text(message)).is_err() {
-            return;
-        }
+/// Sends as fast as it can and reads what comes, until it is stopped; false if the server ends it.
+fn flood(mut client: Client, message: &str, stop: &AtomicBool) -> bool {
+    let stream = client.socket.get_mut();
+    stream.set_write_timeout(Some(WAIT)).unwrap();
+    let mut answers = stream.try_clone().unwrap();
+    let reader = thread::spawn(move || io::copy(&mut answers, &mut io::sink()));
+    let mut lives = true;
+    while lives && !stop.load(Ordering::Relaxed) {
+        lives = match client.socket.send(Message::text(message)) {
+            // A signal came: what was not sent is kept.
+            Err(Error::Io(error)) => error.kind() == io::ErrorKind::Interrupted,
+            sent => sent.is_ok(),
+        };
     }
+    let _ = client.socket.get_mut().shutdown(Shutdown::Both);
+    let _ = reader.join().unwrap();
+    lives
 }
 
-/// How long answers to twenty clients take while three others flood the server, and how late the
-/// machine itself is [s].
-fn flooded(server: &Server, seconds: f64) -> (Waits, Waits) {
-    const FLOODS: [&str; 3] = [
-        r#"{"type": "configuration", "q": [0, 0, 0, -1.5, 0, 1.5, 0]}"#,
-        r#"{"type": "target", "position": [0.4, 0.1, 0.4], "quaternion": [0, 1, 0, 0]}"#,
-        r#"{"type": "method", "name": "damped"}"#,
+/// Messages that change the session, and messages that are much work.
+fn floods() -> [[String; 3]; 2] {
+    let home = crate::json(&["info", "panda"], 0)["home"].clone();
+    let position = [0.4, 0.1, 0.4];
+    let changes = [
+        json!({"type": "configuration", "q": home}),
+        json!({"type": "target", "position": position, "quaternion": [0, 1, 0, 0]}),
+        json!({"type": "method", "name": "damped"}),
     ];
+    let work = [
+        json!({"type": "states", "q": vec![home; 64], "full": true}),
+        json!({"type": "report", "name": "mobility"}),
+        json!({"type": "compare", "methods": ["damped", "truncated"], "point": position}),
+    ];
+    [changes, work].map(|three| three.map(|message| message.to_string()))
+}
+
+/// How long answers to twenty clients take while others flood the server, and how late the machine
+/// itself is [s].
+fn flooded(server: &Server, floods: &[String], seconds: f64) -> (Waits, Waits) {
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
-        for message in FLOODS {
-            let client = server.client();
-            scope.spawn(|| flood(client, message, &stop));
-        }
+        let floods: Vec<_> = floods
+            .iter()
+            .map(|message| {
+                let mut client = server.client();
+                let names = ["velocity-ellipsoid", "principal-screws", "joint-axes"];
+                client.say(&json!({"type": "overlays", "names": names}));
+                client.say(&json!({"type": "distances", "margin": 0.2}));
+                scope.spawn(|| flood(client, message, &stop))
+            })
+            .collect();
         let clients: Vec<_> = (0..CLIENTS)
             .map(|_| server.client())
             .map(|client| scope.spawn(move || patience(client, seconds)))
             .collect();
         let alone = scope.spawn(|| machine(&stop));
-        let waits = clients.into_iter().flat_map(|client| client.join().unwrap());
-        let waits = Waits::of(waits.collect());
+        let waits: Vec<_> = clients.into_iter().map(|client| client.join()).collect();
+        // Threads that wait for it end even if a client failed.
         stop.store(true, Ordering::Relaxed);
-        (waits, Waits::of(alone.join().unwrap()))
+        assert!(floods.into_iter().all(|flood| flood.join().unwrap()), "a flood was ended");
+        let waits = waits.into_iter().flat_map(Result::unwrap);
+        (Waits::of(waits.collect()), Waits::of(alone.join().unwrap()))
     })
 }
 
 #[test]
 fn floods_starve_nobody() {
     let server = Server::new(&["panda"]);
-    let (waits, _) = flooded(&server, 1.0);
-    // Far beyond what is measured: another program may have the processor.
-    assert!(waits.longest() < 20.0, "{waits}");
+    for three in floods() {
+        let (waits, _) = flooded(&server, &three, 1.0);
+        // Far beyond what is measured: another program may have the processor.
+        assert!(waits.longest() < 20.0, "{waits}");
+    }
 }
 
 /// A driver sets 100 configurations a second, which two observers see. How long after it was sent
@@ -323,11 +363,19 @@ fn load() {
         );
     }
     let server = Server::new(&["panda"]);
-    let (waits, machine) = flooded(&server, seconds);
-    println!(
-        "panda: {CLIENTS} clients while three flood: answers after {waits}; the machine itself late \
-         by {machine}"
-    );
+    let [changes, work] = floods();
+    for (words, floods) in [
+        ("alone", &[][..]),
+        ("while three others flood it with changes", &changes),
+        ("while three others flood it with work", &work),
+    ] {
+        let (waits, machine) = flooded(&server, floods, seconds.min(30.0));
+        println!(
+            "panda: {CLIENTS} clients {words}: answers after {waits}; a thread that sleeps is late \
+             by {machine}; answers later than it by {}",
+            waits.beyond(&machine),
+        );
+    }
     let (waits, _) = followed(&server, seconds.min(10.0));
     println!("panda: two observers of a loop at 100 Hz: states after {waits}");
 }

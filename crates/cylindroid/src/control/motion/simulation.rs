@@ -22,6 +22,8 @@ pub struct TrajectorySample<'a> {
     pub joint_velocities: &'a [f64],
     /// The result of the step.
     pub step: &'a Step,
+    /// Limits that bound a joint velocity in this step: index in `q` and kind.
+    pub limits: &'a [(usize, LimitKind)],
 }
 
 /// The result of a motion.
@@ -152,6 +154,7 @@ struct Run<'a> {
     steps: usize,
     largest_lag: f64,
     min_singular_ratio: f64,
+    limits: Vec<(usize, LimitKind)>,
     limits_hit: BTreeSet<(usize, LimitKind)>,
     no_inverse: Option<NoInverse>,
     steps_without_inverse: usize,
@@ -166,6 +169,7 @@ impl<'a> Run<'a> {
             steps: 0,
             largest_lag: 0.0,
             min_singular_ratio: f64::INFINITY,
+            limits: Vec::new(),
             limits_hit: BTreeSet::new(),
             no_inverse: None,
             steps_without_inverse: 0,
@@ -179,7 +183,9 @@ impl<'a> Run<'a> {
     fn note(&mut self, step: Step, observe: &mut impl FnMut(TrajectorySample<'_>)) {
         self.largest_lag = self.largest_lag.max(step.lag);
         self.min_singular_ratio = self.min_singular_ratio.min(step.singular_ratio);
-        self.limits_hit.extend(self.servo.active_limits());
+        self.limits.clear();
+        self.limits.extend(self.servo.active_limits());
+        self.limits_hit.extend(&self.limits);
         if let Some(reason) = self.servo.no_inverse() {
             self.no_inverse.get_or_insert(reason);
             self.steps_without_inverse += 1;
@@ -189,6 +195,7 @@ impl<'a> Run<'a> {
             q: self.robot.q(),
             joint_velocities: self.servo.joint_velocities(),
             step: &step,
+            limits: &self.limits,
         });
     }
 
