@@ -141,7 +141,7 @@ pub(super) fn check_steps(time_limit: f64, dt: f64) -> Result<()> {
     if time_limit / dt > MOST_STEPS {
         return Err(Error::InvalidOption {
             option: "--dt",
-            value: format!("{dt} s"),
+            value: format!("{dt:?} s"),
             reason: format!(
                 "{time_limit} s have {:.1e} such steps, more than {MOST_STEPS:e}; take a longer step \
                  or a lower --time-limit",

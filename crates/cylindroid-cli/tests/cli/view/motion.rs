@@ -47,14 +47,14 @@ fn a_target_is_reached_and_then_nothing_is_sent() {
     assert!(state["singular"]["rank"] == 6 && state["singular"]["values"][5].as_f64() > Some(0.0));
     let fk = crate::json(&["fk", "panda", "--q", &configuration(&state)], 0);
     assert!(difference(&numbers(&fk["pose"]["position"]), &numbers(&target["position"])) < 2e-6);
-    // It comes to rest, and is silent.
+    // It comes to rest, and is silent but for the state after each answer.
     let mut states_in = |seconds| {
         std::thread::sleep(std::time::Duration::from_secs(seconds));
         client.say(&json!({"type": "frame", "name": "none"}));
         std::iter::repeat_with(|| client.hear()).take_while(|m| m["type"] != "error").count()
     };
-    assert!((0..30).any(|_| states_in(1) == 0), "it goes on for half a minute");
-    assert_eq!(states_in(2), 0);
+    assert!((0..30).any(|_| states_in(1) <= 1), "it goes on for half a minute");
+    assert_eq!(states_in(2), 1);
     let last = client.next("state")["seq"].as_u64();
     client.say(&json!({"type": "pause"}));
     assert_eq!(client.next("state")["seq"].as_u64(), last.map(|n| n + 1));
