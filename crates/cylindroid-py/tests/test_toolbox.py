@@ -1,5 +1,6 @@
 """The names of the Robotics Toolbox, and its robots: classes with the attributes of its own."""
 
+import re
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 import cylindroid as cy
+from cylindroid import plot
 from cylindroid.rtb import Robot
 
 
@@ -406,7 +408,12 @@ def test_every_member_is_there_or_says_what_to_use():
             here += 1
         except NotImplementedError as error:
             message = str(error)
-            assert message.startswith(f"'{name}' of the Robotics Toolbox is not in"), message
+            start = f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb; use "
+            assert message.startswith(start) and len(message) > len(start) + 5, message
+            # What it names is there.
+            named = re.findall(r"(Mechanism|cylindroid\.plot|cylindroid)\.(\w+)", message[len(start) :])
+            owners = {"Mechanism": cy.Mechanism, "cylindroid": cy, "cylindroid.plot": plot}
+            assert all(hasattr(owners[owner], name) for owner, name in named), message
     assert here >= 38
 
 

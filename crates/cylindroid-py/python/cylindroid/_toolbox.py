@@ -34,12 +34,23 @@ INSTEAD = {
     "base base_link tool ee_links": "Mechanism.frames, and tool= of fkine and jacob0",
     "URDF urdf_string urdf_filepath": "cylindroid.load",
     "rne rne_python fdyn accel accel_x coriolis coriolis_x cinertia gravload gravload_x "
-    "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap": "",
-    "addconfiguration addconfiguration_attr attach attach_to copy delete_rne dynchanged "
-    "basemesh fkine_geometry fkine_path get_path graph linkcolormap segments symbolic todegrees "
-    "toradians update gravity grippers meshdir hasdynamics hascollision hasgeometry comment "
-    "manufacturer keywords payload_capacity configurations_str config_validate jointdynamics "
-    "control_mode default_backend set_default_backend": "",
+    "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap "
+    "jointdynamics delete_rne dynchanged gravity hasdynamics payload_capacity": "Pinocchio or "
+    "MuJoCo: this library has masses (Mechanism.mass_matrix), but no dynamics",
+    "addconfiguration addconfiguration_attr configurations_str": "configs, a dictionary",
+    "config_validate": "Mechanism.outside_limits",
+    "attach attach_to": "Mechanism.with_tool, or a mechanism file of several robots",
+    "copy": "the robot itself: a Mechanism never changes",
+    "basemesh fkine_geometry meshdir hasgeometry linkcolormap segments": "cylindroid.show, which "
+    "draws the shapes",
+    "hascollision": "cylindroid.CollisionModel",
+    "fkine_path get_path": "Mechanism.fk_all",
+    "graph": "Mechanism.joints and Mechanism.links",
+    "grippers": "Mechanism.frames",
+    "symbolic": "numbers: nothing here is symbolic",
+    "todegrees toradians": "numpy.degrees and numpy.radians",
+    "update control_mode default_backend set_default_backend": "cylindroid.show, whose view.q is set",
+    "comment manufacturer keywords": "Mechanism.name: files of models have no such texts",
 }
 
 
@@ -48,7 +59,7 @@ class NotHere(NotImplementedError, AttributeError):
 
 
 def instead_of(name: str) -> str | None:
-    """What does the same as a member of the Toolbox, empty if nothing does; None of other names."""
+    """What to use for a member of the Toolbox; None of other names."""
     found = (instead for names, instead in INSTEAD.items() if name in names.split())
     return next(found, None)
 

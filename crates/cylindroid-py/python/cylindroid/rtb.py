@@ -84,8 +84,7 @@ class Robot:
         if name in configs:
             return configs[name].copy()
         if (instead := instead_of(name)) is not None:
-            use = f"; use {instead}" if instead else ""
-            raise NotHere(f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb{use}")
+            raise NotHere(f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb; use {instead}")
         raise AttributeError(f"'Robot' object has no attribute '{name}'")
 
     @property
