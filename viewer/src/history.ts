@@ -75,6 +75,7 @@ export class History {
     from.pop();
     to.push(now);
     this.own = true;
+    this.timeline.noteStep();
     if (moment.frame !== now.frame) this.session.send({ type: "frame", name: moment.frame });
     this.session.send({ type: "configuration", q: moment.q });
     this.session.send({ type: "target", ...moment.target });

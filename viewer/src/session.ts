@@ -38,6 +38,9 @@ export class Session {
   private readonly listeners: { [K in keyof Events]?: ((event: Events[K]) => void)[] } = {};
   private readonly connection: Connection;
   private newest: string | null = null;
+  /** When the newest state and the one that was handed on came (ms). */
+  private newestCame = 0;
+  private came = 0;
   private ids = 0;
   private readonly outbox: Outbox;
 
@@ -87,12 +90,18 @@ export class Session {
     this.connection.retry();
   }
 
+  /** Since the newest state came (s). */
+  get age(): number {
+    return (performance.now() - this.came) / 1000;
+  }
+
   /** Hands the newest state on, once. */
   takeNewest(): void {
     if (this.newest === null) return;
     const raw = this.newest;
     this.newest = null;
     this.state = JSON.parse(raw) as State;
+    this.came = this.newestCame;
     this.emit("state", this.state);
     if (!this.eager) this.connection.send({ type: "seen", seq: this.state.seq });
   }
@@ -139,6 +148,7 @@ export class Session {
     if (ack) this.outbox.answered(Number(ack));
     const seq = SEQ.exec(start)?.[1];
     if (this.eager && seq) this.connection.send({ type: "seen", seq: Number(seq) });
+    this.newestCame = performance.now();
     this.newest = raw; // older ones that nobody has drawn are gone
     this.wake();
   }

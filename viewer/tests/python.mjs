@@ -59,8 +59,6 @@ test("two pages follow a loop at 100 Hz", () =>
           const words = `${share(0.5).toFixed(0)} ms (median), ${share(0.95).toFixed(0)} ms (95 %), ${share(1).toFixed(0)} ms (most)`;
           console.log(`${late.length} of ${times.length} configurations came; late by ${words}`);
           assert.ok(late.length > 10);
-          // Measured: about 10 ms. Another program may have the processor now and then, not most of the time.
-          assert.ok(share(0.5) < 50, words);
           assert.equal((await state(page)).servo.sentence, "A program sets the configuration.");
         }
         await picture(second, "python-loop");

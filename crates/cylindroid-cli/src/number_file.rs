@@ -42,12 +42,26 @@ pub(crate) struct Row {
 struct Table {
     names: Option<Vec<String>>,
     rows: Vec<Row>,
+    /// The first cell of each named column that is no number: its column and its line, as text.
+    words: Vec<(usize, String)>,
+}
+
+impl Table {
+    /// Returns an error if one of these columns has a cell that is no number.
+    fn check_numbers(&self, path: &Path, wanted: impl Fn(usize) -> bool) -> Result<()> {
+        match self.words.iter().find(|(column, _)| wanted(*column)) {
+            Some((_, line)) => Err(cannot_read(path, line)),
+            None => Ok(()),
+        }
+    }
 }
 
 /// The rows of a regular file of at most [`LARGEST`] bytes and [`MOST_ROWS`] rows; CSV unless its
 /// name ends in .json. A first line of CSV that is no numbers names the columns.
 pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
-    Ok(table(path)?.rows)
+    let table = table(path)?;
+    table.check_numbers(path, |_| true)?;
+    Ok(table.rows)
 }
 
 fn table(path: &Path) -> Result<Table> {
@@ -92,6 +106,7 @@ fn read_columns(
             names.iter().map(place).collect::<Result<_>>()?
         }
     };
+    table.check_numbers(path, |column| places.contains(&column))?;
     let expected = table.names.as_ref().map_or(names.len(), Vec::len);
     let mut q = Vec::with_capacity(table.rows.len() * names.len());
     for Row { place, numbers } in &table.rows {
@@ -127,24 +142,35 @@ fn csv(path: &Path, bytes: &[u8]) -> Result<Table> {
         .flexible(true)
         .from_reader(bytes);
     let (mut names, mut rows) = (None, Vec::new());
+    let mut words: Vec<(usize, String)> = Vec::new();
     for (i, record) in reader.records().enumerate() {
         let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
         let line = record.position().map_or(i as u64 + 1, csv::Position::line);
-        let numbers: std::result::Result<Vec<f64>, _> =
-            record.iter().map(str::parse::<f64>).collect();
+        let is_all_numbers = record.iter().all(|cell| cell.parse::<f64>().is_ok());
         if rows.len() >= MOST_ROWS {
             return Err(too_many_rows(path));
         }
-        match numbers {
-            Ok(numbers) => rows.push(Row { place: Place::Line(line), numbers }),
-            Err(_) if i == 0 => names = Some(record.iter().map(str::to_owned).collect()),
-            Err(_) => {
-                let text = record.iter().collect::<Vec<_>>().join(",");
-                return Err(cannot_read(path, &format!("line {line} is not all numbers: {text}")));
-            }
+        if i == 0 && !is_all_numbers {
+            names = Some(record.iter().map(str::to_owned).collect::<Vec<_>>());
+            continue;
         }
+        let text = || record.iter().collect::<Vec<_>>().join(",");
+        let message = || format!("line {line} is not all numbers: {}", text());
+        if !is_all_numbers && names.is_none() {
+            return Err(cannot_read(path, &message()));
+        }
+        let cell = |(column, cell): (usize, &str)| {
+            cell.parse().unwrap_or_else(|_| {
+                if words.iter().all(|(known, _)| *known != column) {
+                    words.push((column, message()));
+                }
+                f64::NAN
+            })
+        };
+        let numbers = record.iter().enumerate().map(cell).collect();
+        rows.push(Row { place: Place::Line(line), numbers });
     }
-    Ok(Table { names, rows })
+    Ok(Table { names, rows, words })
 }
 
 fn json(path: &Path, bytes: &[u8]) -> Result<Table> {
@@ -155,7 +181,8 @@ fn json(path: &Path, bytes: &[u8]) -> Result<Table> {
     let rows: Vec<Vec<f64>> = serde_json::from_slice(bytes)
         .map_err(|e| cannot_read(path, &format!("not a list of lists of numbers: {e}")))?;
     let row = |(i, numbers)| Row { place: Place::Row(i + 1), numbers };
-    Ok(Table { names: None, rows: rows.into_iter().enumerate().map(row).collect() })
+    let rows = rows.into_iter().enumerate().map(row).collect();
+    Ok(Table { names: None, rows, words: Vec::new() })
 }
 
 pub(crate) fn cannot_read(path: &Path, message: &str) -> Error {

@@ -117,7 +117,7 @@ impl TaskTrajectory {
             joint_velocities: servo.joint_velocities().to_vec(),
             tasks: tasks.collect(),
             nearest: servo.near().iter().map(|near| near.distance).reduce(f64::min),
-            limits: servo.active_limits().map(ActiveLimit::from).collect(),
+            limits: servo.active_limits().map(|l| ActiveLimit::of(servo.mechanism(), l)).collect(),
         });
     }
 
@@ -154,7 +154,7 @@ impl TaskTrajectory {
                 numbers.extend([task.position_error, task.orientation_error, task.scale]);
             }
             let nearest = self.avoids.then(|| row.nearest.map_or(String::new(), |x| x.to_string()));
-            let limits = limits_cell(&row.limits, &self.joint_names);
+            let limits = limits_cell(&row.limits);
             let cells = numbers.iter().map(f64::to_string).chain(nearest).chain([limits]);
             csv.write_record(cells)?;
         }

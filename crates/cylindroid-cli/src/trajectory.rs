@@ -19,6 +19,8 @@ pub(crate) struct Trajectory {
     /// "rad" or "m", for each joint.
     pub(crate) units: Vec<&'static str>,
     pub(crate) samples: Vec<Row>,
+    #[serde(skip)]
+    robot: Mechanism,
 }
 
 /// One sample.
@@ -44,16 +46,15 @@ pub(crate) struct Row {
 }
 
 /// A limit that bounds a joint velocity.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub(crate) struct ActiveLimit {
-    /// Index in the joint names.
-    pub(crate) coordinate: usize,
-    pub(crate) kind: &'static str,
+    joint: String,
+    kind: &'static str,
 }
 
-impl From<(usize, LimitKind)> for ActiveLimit {
-    fn from((coordinate, kind): (usize, LimitKind)) -> Self {
-        Self { coordinate, kind: kind.name() }
+impl ActiveLimit {
+    pub(crate) fn of(robot: &Mechanism, (velocity, kind): (usize, LimitKind)) -> Self {
+        Self { joint: robot.velocity_name(velocity).to_owned(), kind: kind.name() }
     }
 }
 
@@ -85,6 +86,7 @@ impl Trajectory {
             joint_names: output::joint_names(robot).into_iter().map(str::to_owned).collect(),
             units: robot.coordinates().iter().map(|c| c.kind.unit()).collect(),
             samples: Vec::new(),
+            robot: robot.clone(),
         }
     }
 
@@ -105,7 +107,7 @@ impl Trajectory {
             position_error: sample.step.position_error,
             orientation_error: sample.step.orientation_error,
             singular_ratio: sample.step.singular_ratio,
-            limits: sample.limits.iter().map(|limit| (*limit).into()).collect(),
+            limits: sample.limits.iter().map(|l| ActiveLimit::of(&self.robot, *l)).collect(),
         });
     }
 
@@ -133,7 +135,7 @@ impl Trajectory {
                 .chain(&row.position)
                 .chain(&row.quaternion)
                 .chain(&errors);
-            let limits = limits_cell(&row.limits, &self.joint_names);
+            let limits = limits_cell(&row.limits);
             csv.write_record(numbers.map(f64::to_string).chain([limits]))?;
         }
         csv.flush()
@@ -148,9 +150,8 @@ pub(crate) fn joint_columns(joint_names: &[String]) -> Vec<String> {
 }
 
 /// Limits in a cell: `shoulder velocity; elbow position`.
-pub(crate) fn limits_cell(limits: &[ActiveLimit], joint_names: &[String]) -> String {
-    let words =
-        limits.iter().map(|limit| format!("{} {}", joint_names[limit.coordinate], limit.kind));
+pub(crate) fn limits_cell(limits: &[ActiveLimit]) -> String {
+    let words = limits.iter().map(|limit| format!("{} {}", limit.joint, limit.kind));
     words.collect::<Vec<_>>().join("; ")
 }
 

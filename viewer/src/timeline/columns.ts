@@ -1,7 +1,7 @@
 /** The numbers of a recording over time, as columns that grow, and the stretches in which something bit. */
 import type { Scene, State } from "../protocol";
 
-/** Of a sample: a joint is at a limit or outside of it; a singular value is lost. */
+/** Of a sample: a limit bounds a joint velocity, or a joint is outside of its limits; a singular value is lost. */
 export const AT_LIMIT = 1;
 export const SINGULAR = 2;
 /** After it the user began something. */
@@ -102,6 +102,15 @@ export class Columns {
     let i = from + way;
     while ((end - i) * way > 0 && (this.marks.at(i) & STEP) === 0) i += way;
     return (end - i) * way < 0 ? end : i;
+  }
+
+  /** Times at which steps of the user began. */
+  steps(): number[] {
+    const found: number[] = [];
+    this.marks.view().forEach((mark, i) => {
+      if ((mark & STEP) !== 0) found.push(this.time.at(i));
+    });
+    return found;
   }
 
   /** Times from which and until which a mark is set. */

@@ -3,7 +3,7 @@ import { fill, h, s, text } from "../dom";
 import { fixed } from "../format";
 import { icon, type Icon } from "../icons";
 import { MARKS } from "./chart";
-import { STEP, type Columns } from "./columns";
+import type { Columns } from "./columns";
 import type { Player } from "./player";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -70,7 +70,7 @@ export class Dock {
     // The thumb does not go beyond the ends.
     const across = width - THUMB;
     const place = (time: number): number => THUMB / 2 + (time / end) * across;
-    const steps = columns.stretches(STEP).map(([from]) => s("rect", { class: "mark-step", x: place(from), y: 0, height: 2 * STRIPE + 1, width: 1.5 }));
+    const steps = columns.steps().map((time) => s("rect", { class: "mark-step", x: place(time), y: 0, height: 2 * STRIPE + 1, width: 1.5 }));
     fill(this.marks, ...MARKS.flatMap(({ mark, name }, row) => columns.stretches(mark).map(([from, to]) => s("rect", {
       class: `mark-${name}`, x: place(from), y: row * (STRIPE + 1), height: STRIPE, width: Math.max(((to - from) / end) * across, 1.5),
     }))), ...steps);

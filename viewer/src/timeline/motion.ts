@@ -118,7 +118,7 @@ function fromJson(name: string, text: string, scene: Scene): Motion {
       joint_velocities: rates === null ? null : numbers(rates, "joint_velocities"),
       error: errorOf(sample),
       target: poseOf(sample["target"]),
-      limits: limitsOf(sample["limits"] ?? servo["limits"], places),
+      limits: limitsOf(sample["limits"] ?? servo["limits"], places, names),
     });
     check(samples, () => place);
   });
@@ -144,11 +144,12 @@ function poseOf(value: unknown): Pose | null {
   return isList(position, 3) && isList(quaternion, 4) ? ({ position, quaternion } as Pose) : null;
 }
 
-function limitsOf(value: unknown, places: number[]): ActiveLimit[] {
+/** By the names of joints in files of `move`, by places in those of this page. */
+function limitsOf(value: unknown, places: number[], names: string[]): ActiveLimit[] {
   if (!Array.isArray(value)) return [];
   return value.flatMap((limit) => {
-    const { coordinate, kind } = object(limit);
-    const own = typeof coordinate === "number" ? places.indexOf(coordinate) : -1;
+    const { coordinate, joint, kind } = object(limit);
+    const own = typeof coordinate === "number" ? places.indexOf(coordinate) : names.indexOf(String(joint));
     return own >= 0 ? [{ coordinate: own, kind: String(kind) }] : [];
   });
 }

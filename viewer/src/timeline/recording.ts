@@ -5,6 +5,9 @@ import { Columns } from "./columns";
 /** About twenty minutes at 60 states a second of a small robot. */
 export const MOST = 72_000;
 
+/** Between two samples (s). */
+const LEAST = 1e-4;
+
 export class Recording {
   readonly columns: Columns;
   /** As the server sent them: text needs a tenth of the memory of what it describes. */
@@ -39,11 +42,17 @@ export class Recording {
     this.scenes.push({ from: this.length, scene });
   }
 
+  /** The first state, which was computed `age` ago (s): it is at time 0, and what follows counts from now. */
+  begin(state: State, age: number): void {
+    this.began = state.clock + age;
+    this.take(0, JSON.stringify(state), state);
+  }
+
   /** A state of the session, as text: when it was computed counts, not when it came. */
   takeLive(raw: string, state = JSON.parse(raw) as State): void {
     this.began ??= state.clock;
-    // The clock of a server that was restarted begins anew.
-    if (state.clock - this.began < this.duration) this.began = state.clock - this.duration;
+    // The clock of a server that was restarted begins anew; no two samples are at one time.
+    this.began = Math.min(this.began, state.clock - this.duration - LEAST);
     this.take(state.clock - this.began, raw, state);
   }
 
@@ -107,7 +116,7 @@ export class Recording {
         ...state.tool.position, ...state.tool.quaternion,
         ...state.target.position, ...state.target.quaternion, state.error.position, state.error.orientation,
         state.singular?.ratio, state.singular?.rank, state.servo.status,
-        state.servo.limits.map(({ coordinate, kind }) => `${coordinates[coordinate]?.name} ${kind}`).join("; "),
+        state.servo.limits.map(({ coordinate, kind }) => `${coordinates[coordinate]?.name ?? "?"} ${kind}`).join("; "),
       ].map(cell).join(",");
     });
     return new Blob([[head.map(cell).join(","), ...lines].join("\r\n"), "\r\n"], { type: "text/csv" });

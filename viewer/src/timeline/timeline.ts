@@ -56,6 +56,8 @@ export class Timeline {
   private awaited: { index: number; resolve: (shown: boolean) => void } | null = null;
   /** A moment of the recording is shown, or will be. */
   private isWanted = false;
+  /** The moment that is shown or will be. */
+  private here: number | null = null;
   private later = 0;
 
   constructor(dock: HTMLElement, private readonly session: Session, private readonly tell: Told) {
@@ -98,21 +100,17 @@ export class Timeline {
   /** Where a recording is shown, whether a step of the user lies before or after that moment. */
   get steps(): { before: boolean; after: boolean } | null {
     const { recording, here } = this;
-    return recording && here !== null ? { before: here > 0, after: here < recording.length - 1 } : null;
+    // A motion of a file has no steps of the user.
+    return recording && recording.file === null && here !== null ? { before: here > 0, after: here < recording.length - 1 } : null;
   }
 
   /** Where a recording is shown, shows the moment before a step of the user, or after it; false elsewhere. */
   step(way: -1 | 1): boolean {
     const { recording, here } = this;
-    if (!recording || here === null) return false;
+    if (!recording || recording.file !== null || here === null) return false;
     this.player.pause();
     this.player.seek(recording.columns.time.at(recording.columns.step(here, way)));
     return true;
-  }
-
-  /** The moment that is shown or will be. */
-  private get here(): number | null {
-    return this.isWanted ? this.wanted ?? this.current?.index ?? null : null;
   }
 
   owns(id: unknown): boolean {
@@ -129,7 +127,7 @@ export class Timeline {
     this.live();
     this.records = this.session.eager = true;
     this.replace(new Recording(scene));
-    this.recording?.takeLive(JSON.stringify(state), state);
+    this.recording?.begin(state, this.session.age);
     this.grow();
   }
 
@@ -243,7 +241,7 @@ export class Timeline {
   }
 
   private want(index: number): void {
-    this.wanted = index;
+    this.wanted = this.here = index;
     this.isWanted = true;
     if (this.awaited && index !== this.awaited.index) this.end(false);
     this.tell.moved();
@@ -253,7 +251,7 @@ export class Timeline {
   private leave(): boolean {
     this.player.pause();
     this.end(false);
-    this.wanted = null;
+    this.wanted = this.here = null;
     this.isWanted = false;
     const left = this.current !== null;
     this.current = null;
@@ -299,6 +297,7 @@ export class Timeline {
       this.dock.at(this.player.time, false);
     }
     this.plots.grow();
+    this.tell.moved();
     this.later ||= window.setTimeout(() => {
       this.later = 0;
       this.dock.paint();

@@ -167,7 +167,9 @@ fn servo(session: &Session) -> ServoJson {
     }
 }
 
+/// Of the coordinates: an actuated loop joint has none.
 fn limits(session: &Session) -> Vec<LimitJson> {
-    let active = session.active_limits().into_iter();
+    let n = session.mechanism().n();
+    let active = session.active_limits().into_iter().filter(|(i, _)| *i < n);
     active.map(|(coordinate, kind)| LimitJson { coordinate, kind: kind.name() }).collect()
 }

@@ -100,10 +100,11 @@ impl Client {
             let done = tokio::select! {
                 frame = stream.next() => match frame {
                     Some(Ok(frame)) => {
-                        silent = tokio::time::Instant::now() + silence;
                         let begin = Instant::now();
                         let heard = self.hear(&frame).await;
                         work += begin.elapsed();
+                        // An answer may wait for its turn: that is no silence of the client.
+                        silent = tokio::time::Instant::now() + silence;
                         heard
                     }
                     Some(Err(error)) => {
@@ -114,10 +115,12 @@ impl Client {
                 },
                 () = sleep_until(silent) => return,
                 Some(report) = self.reports.join_next(), if !self.reports.is_empty() => {
-                    match report.ok().flatten() {
+                    let answered = match report.ok().flatten() {
                         Some(report) => self.answer(report).await,
                         None => Ok(()),
-                    }
+                    };
+                    silent = tokio::time::Instant::now() + silence;
+                    answered
                 }
             };
             if done.is_err() {

@@ -250,9 +250,10 @@ fn zero_joints_are_a_size() {
 /// Numbers that would let a command run for ever are refused at once.
 #[test]
 fn counts_and_steps_are_bounded() {
-    refused_move(&["--dt", "1e-120"], "--dt = 1e-120 s");
-    refused_move(&["--dt", "1e-9"], "lower --time-limit");
-    refused_move(&["--time-limit", "1e9"], "lower --time-limit");
+    refused_move(&["--dt", "1e-120"], "steps of 1e-120 s");
+    refused_move(&["--dt", "1e-9"], "take a longer --dt");
+    refused_move(&["--time-limit", "1e9"], "--time-limit = 1000000000 s");
+    refused_move(&["--time-limit", "1e5", "--out", "way.csv"], "each is kept for --out");
     let many = "18446744073709551615";
     for line in [
         &["ik", "panda", "--to", "0.4,0,0.4", "--iterations", many][..],

@@ -1,7 +1,7 @@
 //! Flags reach what they set: times of paths against their formulas, inverses against the library.
 
 use cylindroid::control::{InverseSelection, NamedInverse};
-use cylindroid::{ReferenceFrame, catalogue};
+use cylindroid::{ReferenceFrame, Rotation, Vec3, catalogue};
 use serde_json::Value;
 
 use crate::{difference, json, numbers};
@@ -182,4 +182,43 @@ fn parameters_of_inverses() {
         }
     }
     assert!(seen >= 10, "{seen}");
+}
+
+const MOVE: [&str; 4] = ["move", "panda", "--to", "0.4,0.1,0.4"];
+
+/// An error falls by the gain: four times as large, it needs a quarter of the time. Steps of `--dt`
+/// fill that time.
+#[test]
+fn gain_and_time_between_steps() {
+    let moved = |flags: &[&str]| {
+        let report = json(&[&MOVE[..], flags].concat(), 0);
+        (report["time"].as_f64().unwrap(), report["steps"].as_f64().unwrap())
+    };
+    let ((slow, _), (fast, _)) = (moved(&["--gain", "2"]), moved(&["--gain", "8"]));
+    assert!((slow / fast - 4.0).abs() < 0.5, "{slow} {fast}");
+    let [(fine, many), (coarse, few)] = ["0.001", "0.004"].map(|dt| moved(&["--dt", dt]));
+    assert!((fine - 0.001 * many).abs() < 1e-9 && (coarse - 0.004 * few).abs() < 1e-9);
+    assert!((fine - coarse).abs() < 0.1, "{fine} {coarse}");
+}
+
+#[test]
+fn a_heavy_joint_stays() {
+    let first = |flags: &[&str]| numbers(&json(&[&MOVE[..], flags].concat(), 0)["q"])[0];
+    assert!(first(&[]) > 0.05 && first(&["--joint-weights", "1e4,1,1,1,1,1,1"]).abs() < 1e-3);
+}
+
+#[test]
+fn targets_by_their_rotation_vector() {
+    let vector = Vec3::new(0.3, -2.9, 0.4);
+    let columns = Rotation::exp(vector).matrix().cols.map(Vec3::to_array);
+    for words in [&["0.3,-2.9,0.4"][..], &["17.188733853924695,-166.15775,22.918312", "--degrees"]]
+    {
+        let target = ["ik", "panda", "--to", "0.4,0.1,0.4", "--rotation-vector"];
+        let found = json(&[&target[..], words].concat(), 0);
+        let pose = &json(&["fk", "panda", "--q", &list(&numbers(&found["q"]))], 0)["pose"];
+        for (i, row) in pose["matrix"].as_array().unwrap()[..3].iter().enumerate() {
+            let wanted = columns.map(|column| column[i]);
+            assert!(difference(&numbers(row)[..3], &wanted) < 2e-6, "{pose}");
+        }
+    }
 }

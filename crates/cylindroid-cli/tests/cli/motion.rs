@@ -345,3 +345,35 @@ fn waypoints_are_passed_without_stopping() {
         assert!(output.status.code() == Some(2) && error.contains(expected), "{error}");
     }
 }
+
+/// Also of an actuated joint that closes a loop, which has no coordinate; and what `move` writes,
+/// `sweep` reads.
+#[test]
+fn limits_of_all_velocities_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (csv, js) = (file("m.csv"), file("m.json"));
+    let target = ["--actuated", "q1,q5", "--task", "coupler=1.05,1.95,0", "--acceleration", "1"];
+    for out in [&csv, &js] {
+        json(&[&["move", "five-bar"], &target[..], &["--out", out]].concat(), 0);
+    }
+    let whole: serde_json::Value = serde_json::from_slice(&std::fs::read(&js).unwrap()).unwrap();
+    let samples = whole["samples"].as_array().unwrap();
+    let limits = samples.iter().flat_map(|s| s["limits"].as_array().unwrap().clone());
+    let joints: std::collections::BTreeSet<String> =
+        limits.map(|limit| limit["joint"].as_str().unwrap().to_owned()).collect();
+    assert!(joints.contains("q5") && !joints.contains(""), "{joints:?}");
+    assert!(std::fs::read_to_string(&csv).unwrap().contains("q5 acceleration"));
+    let panda = file("p.csv");
+    json(&["move", "panda", "--to", "0.4,0.1,0.4", "--out", &panda], 0);
+    for (robot, path) in [("panda", &panda), ("five-bar", &csv)] {
+        let rows = std::fs::read_to_string(path).unwrap().lines().count() - 1;
+        let swept = json(&["sweep", robot, "--configurations", path, "--quantities", "pose"], 0);
+        assert_eq!(swept["rows"].as_u64().unwrap_or(0), rows as u64, "{swept}");
+    }
+    let broken = file("b.csv");
+    std::fs::write(&broken, "q.a,limits,q.b\n0,x,0\n0,,none\n").unwrap();
+    let stderr =
+        crate::refused(&["sweep", "panda", "--configurations", &broken, "--quantities", "pose"]);
+    assert!(stderr.contains("no column 'panda_joint1'"), "{stderr}");
+}

@@ -116,10 +116,14 @@ def show(
         frame_ancestors = _NOTEBOOKS
     token = secrets.token_urlsafe(24)
     view = start_view(mechanism, q, frame, tool, meshes, host, port, token, frame_ancestors)
-    if view.url_for_others:
-        warnings.warn(_FOR_OTHERS.format(view.url_for_others), UserWarning, stacklevel=2)
-    if open:
-        view.open(height)
+    try:
+        if view.url_for_others:
+            warnings.warn(_FOR_OTHERS.format(view.url_for_others), UserWarning, stacklevel=2)
+        if open:
+            view.open(height)
+    except BaseException:  # nobody would have the view to close it
+        view.close()
+        raise
     return view
 
 
@@ -141,11 +145,14 @@ def open_page(url: str, height: int) -> None:
 
 #: Each calls the functions of a view.
 _threads: list[threading.Thread] = []
+#: That started them: a process that is forked has none of them.
 _process = os.getpid()
 
 
 def start_calls(calls: Any) -> None:
     """Calls the functions of a view in a thread, until the view is closed."""
+    global _process
+    _process = os.getpid()
     thread = threading.Thread(target=_call, args=(calls,), name="cylindroid-view", daemon=True)
     _threads[:] = [other for other in _threads if other.is_alive()]
     _threads.append(thread)
@@ -164,7 +171,6 @@ def _call(calls: Any) -> None:
 @atexit.register
 def _end() -> None:
     """Ends what waits for a page before Python is gone."""
-    # A process that was forked has none of the threads.
     if os.getpid() != _process:
         return
     close_views()

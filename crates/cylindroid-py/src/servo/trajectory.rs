@@ -98,7 +98,8 @@ impl PyTrajectory {
         arrays::vector(py, &self.errors[2])
     }
 
-    /// The steps as columns with names, those of the file that `cylindroid move --out` writes.
+    /// The steps as columns with names, those of numbers in the file that `cylindroid move --out`
+    /// writes.
     ///
     /// Returns
     /// -------

@@ -58,7 +58,13 @@ impl Callbacks {
         if !is_running {
             let viewer = Arc::downgrade(viewer);
             let calls = Calls { callbacks: Arc::clone(self), viewer, waiting: Mutex::default() };
-            py.import("cylindroid._show")?.call_method1("start_calls", (calls,))?;
+            let started = py
+                .import("cylindroid._show")
+                .and_then(|show| show.call_method1("start_calls", (calls,)));
+            if let Err(error) = started {
+                self.lock().is_running = false;
+                return Err(error);
+            }
         }
         Ok(())
     }
@@ -66,18 +72,20 @@ impl Callbacks {
     /// The functions for this drag, with their arguments.
     fn calls(&self, py: Python<'_>, drag: &Drag) -> PyResult<Vec<Call>> {
         let copies = |all: &[Py<PyAny>]| all.iter().map(|f| f.clone_ref(py)).collect::<Vec<_>>();
-        let (functions, arguments) = match drag {
-            Drag::Target(pose) => {
-                (copies(&self.lock().target), (arrays::pose(py, *pose)?,).into_pyobject(py)?)
-            }
-            Drag::Configuration(q) => {
-                (copies(&self.lock().configuration), (arrays::vector(py, q),).into_pyobject(py)?)
-            }
-            Drag::Obstacle { name, pose } => {
-                let arguments = (name, arrays::pose(py, *pose)?).into_pyobject(py)?;
-                (copies(&self.lock().obstacle), arguments)
-            }
+        // The lock is free while Python makes the arguments.
+        let arguments = match drag {
+            Drag::Target(pose) => (arrays::pose(py, *pose)?,).into_pyobject(py)?,
+            Drag::Configuration(q) => (arrays::vector(py, q),).into_pyobject(py)?,
+            Drag::Obstacle { name, pose } => (name, arrays::pose(py, *pose)?).into_pyobject(py)?,
             _ => return Ok(Vec::new()),
+        };
+        let functions = {
+            let functions = self.lock();
+            match drag {
+                Drag::Target(_) => copies(&functions.target),
+                Drag::Configuration(_) => copies(&functions.configuration),
+                _ => copies(&functions.obstacle),
+            }
         };
         Ok(functions.into_iter().map(|f| (f, arguments.clone().unbind())).collect())
     }

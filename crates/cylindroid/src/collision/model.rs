@@ -67,7 +67,7 @@ impl CollisionModel {
     /// ```
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for a margin that is not finite, and for more than a million pairs of
+    /// [`Error::InvalidOption`] for a margin that is not finite, and for more than four million pairs of
     /// shapes that could collide.
     pub fn new(mechanism: &Mechanism, options: &CollisionOptions) -> Result<Self> {
         let (mut scene, mut ignored) = (Scene::default(), Vec::new());
@@ -166,6 +166,7 @@ impl CollisionModel {
         }
         let (convex, shape_from_body) = body::convex(shape, Default::default())
             .map_err(|reason| body::refused("obstacle", name, reason))?;
+        pairs::check_count(self.scene.pairs.len() + self.links, self.scene.bodies.len() + 1)?;
         let is_half_space = |convex: &Convex| matches!(convex.core, Core::HalfSpace);
         let b = self.scene.bodies.len();
         for (a, body) in self.scene.bodies[..self.links].iter().enumerate() {

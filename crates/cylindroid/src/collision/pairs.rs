@@ -11,14 +11,15 @@ use super::scene::Pair;
 use crate::error::{Error, Result};
 use crate::model::{Ignored, JointKind, Mechanism};
 
-/// Pairs of shapes at most: each has its own memory, and its distance is evaluated in every search.
-const MOST_PAIRS: usize = 1_000_000;
+/// Pairs of shapes at most, before those that always or never touch are dropped; the rest takes 16
+/// bytes each, and a bound of its distance in every search.
+const MOST_CANDIDATES: usize = 4_000_000;
 
 /// All pairs of shapes of links that can move relative to one another and are neither neighbours
 /// nor disabled; disabled pairs of unknown links are logged.
 ///
 /// # Errors
-/// More than [`MOST_PAIRS`].
+/// More than [`MOST_CANDIDATES`].
 pub(super) fn candidates(
     mechanism: &Mechanism,
     bodies: &[Body],
@@ -63,20 +64,26 @@ pub(super) fn candidates(
             if rigid || near || off || planes || ignore {
                 continue;
             }
-            if pairs.len() == MOST_PAIRS {
-                return Err(Error::InvalidOption {
-                    option: "collision model",
-                    value: format!("{} shapes", bodies.len()),
-                    reason: format!(
-                        "more than {MOST_PAIRS} pairs of them could collide; merge shapes, give fewer \
-                         links a collision shape, or disable pairs in an SRDF"
-                    ),
-                });
-            }
+            check_count(pairs.len() + 1, bodies.len())?;
             pairs.push(Pair { a, b });
         }
     }
     Ok(pairs)
+}
+
+/// Returns an error for more pairs than [`MOST_CANDIDATES`].
+pub(super) fn check_count(pairs: usize, shapes: usize) -> Result<()> {
+    if pairs <= MOST_CANDIDATES {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: "collision model",
+        value: format!("{shapes} shapes"),
+        reason: format!(
+            "more than {MOST_CANDIDATES} pairs of them could collide; merge shapes, give fewer links a \
+             collision shape, or disable pairs in an SRDF"
+        ),
+    })
 }
 
 fn ordered(a: usize, b: usize) -> (usize, usize) {

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use super::avoidance::Avoidance;
-use super::convergence::{Errors, is_reached};
+use super::convergence::{Errors, is_admissible, is_reached};
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::collision::CollisionModel;
@@ -87,8 +87,7 @@ impl Solver {
 
     /// The errors of a solution; `None` if it is none.
     fn solution_errors(&mut self, q: &[f64]) -> Option<Errors> {
-        let within = self.problem.mechanism.outside_limits(q).next().is_none();
-        if !within || q.iter().any(|x| !x.is_finite()) {
+        if !is_admissible(&self.problem.mechanism, q) {
             return None;
         }
         let errors = self.problem.evaluate(q);

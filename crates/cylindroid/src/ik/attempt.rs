@@ -4,7 +4,7 @@
 //!          needs no reason for each miss, which costs ten runs
 //! Checked  tests/sweep/capability.rs
 
-use super::convergence::is_reached;
+use super::convergence::{is_admissible, is_reached};
 use super::goal::Goal;
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::error::Result;
@@ -16,8 +16,8 @@ impl Solver {
         self.problem.set_goals(goals)?;
         self.problem.clamp(q);
         let (errors, _) = self.problem.run(q, &self.options, ITERATIONS_PER_RESTART);
-        let is_within = self.problem.mechanism.outside_limits(q).next().is_none();
-        Ok(is_reached(errors, &self.options) && is_within && q.iter().all(|x| x.is_finite()))
+        let may_be = is_admissible(&self.problem.mechanism, q);
+        Ok(is_reached(errors, &self.options) && may_be)
     }
 
     /// The configuration of the next call's initial guess.

@@ -13,6 +13,7 @@
 //!          it would leave the target
 //! Checked  tests/map/inverse.rs
 
+use super::convergence::is_admissible;
 use super::goal::{Goal, Objective, check_each};
 use super::options::IkOptions;
 use super::reason::MissReason;
@@ -71,7 +72,7 @@ pub(super) fn solve_closed(
             let solution = goal.solution(mechanism, q, (found.first.steps, tried))?;
             let reached = solution.position_error <= options.position_tolerance
                 && solution.orientation_error <= options.orientation_tolerance
-                && mechanism.outside_limits(q).next().is_none();
+                && is_admissible(mechanism, q);
             if reached {
                 solutions.push(Solution { success: true, reason: None, ..solution });
             }

@@ -5,6 +5,7 @@
 //! Checked  tests/it/ik.rs, src/ik/levenberg_marquardt.rs (single against batched restarts)
 
 use super::options::IkOptions;
+use crate::model::Mechanism;
 
 /// Ratio of the damping to the squared error [-].
 pub(super) const DAMPING: f64 = 0.03;
@@ -31,4 +32,33 @@ pub(super) struct Errors {
 pub(super) fn is_reached(errors: Errors, options: &IkOptions) -> bool {
     errors.position <= options.position_tolerance
         && errors.orientation <= options.orientation_tolerance
+}
+
+/// True for a configuration that may be a solution: all coordinates, also those that move no goal, are
+/// finite and within their limits. Trees and closed chains call nothing a success without it.
+pub(super) fn is_admissible(mechanism: &Mechanism, q: &[f64]) -> bool {
+    q.iter().all(|x| x.is_finite()) && mechanism.outside_limits(q).next().is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_admissible;
+
+    #[test]
+    fn what_may_be_a_solution() {
+        let robot = crate::catalogue::load("panda").unwrap();
+        let at = |joint: usize, x: f64| {
+            let mut q = robot.home().to_vec();
+            q[joint] = x;
+            is_admissible(&robot, &q)
+        };
+        assert!(at(3, -1.0) && !at(3, 1.0));
+        // Joints without limits, too.
+        let free = robot.without_position_limits();
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut q = robot.home().to_vec();
+            q[6] = x;
+            assert!(!at(6, x) && !is_admissible(&free, &q), "{x}");
+        }
+    }
 }

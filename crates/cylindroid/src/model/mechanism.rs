@@ -416,7 +416,7 @@ impl Mechanism {
         rows.try_for_each(|(i, row)| self.check_q(&format!("{what}[{i}]"), row))
     }
 
-    /// Coordinates outside their position limits.
+    /// Coordinates outside their position limits; NaN is outside.
     ///
     /// ```
     /// let robot = cylindroid::load("panda")?;
@@ -431,7 +431,7 @@ impl Mechanism {
             .iter()
             .zip(q)
             .enumerate()
-            .filter(|(_, (c, x))| **x < c.limits.lower || **x > c.limits.upper)
+            .filter(|(_, (c, x))| !(c.limits.lower..=c.limits.upper).contains(*x))
             .map(|(i, _)| i)
     }
 

@@ -137,6 +137,6 @@ fn pairs_have_a_limit() {
     };
     let options = CollisionOptions { samples: 0, ..CollisionOptions::default() };
     assert_eq!(names(&star(100), &options).len(), 100 * 99 / 2);
-    let error = CollisionModel::new(&star(2000), &options).unwrap_err().to_string();
-    assert!(error.contains("2000 shapes") && error.contains("more than 1000000 pairs"), "{error}");
+    let error = CollisionModel::new(&star(3000), &options).unwrap_err().to_string();
+    assert!(error.contains("3000 shapes") && error.contains("more than 4000000 pairs"), "{error}");
 }

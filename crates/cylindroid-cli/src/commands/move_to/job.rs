@@ -77,7 +77,7 @@ impl Job {
         options.secondary = secondary(&args.servo.secondary, &robot, &options, &start)?;
         // Before the target is looked at: a broken option is the clearer message.
         options.check(&robot)?;
-        check_steps(args.time_limit, options.dt)?;
+        check_steps(args, options.dt)?;
 
         let defaults = joint_defaults(args);
         let pose = |q: &[f64]| robot.state(q)?.pose(options.end_effector);
@@ -132,20 +132,25 @@ impl Job {
     }
 }
 
-/// Steps of a motion at most; each is recorded.
-const MOST_STEPS: f64 = 1e7;
+/// Steps of a motion at most, and of one whose steps are kept for a file or a picture.
+const MOST_STEPS: f64 = 1e9;
+const MOST_KEPT: f64 = 1e7;
 
-/// Returns an error for a time limit that is not positive or has too many steps.
-pub(super) fn check_steps(time_limit: f64, dt: f64) -> Result<()> {
+/// Returns an error for a time limit that is not positive or has too many steps of `dt`.
+pub(super) fn check_steps(args: &MoveArgs, dt: f64) -> Result<()> {
+    let time_limit = args.time_limit;
     Error::check_positive("--time-limit", time_limit)?;
-    if time_limit / dt > MOST_STEPS {
+    let is_kept = args.out.is_some() || args.plot.is_some();
+    let most = if is_kept { MOST_KEPT } else { MOST_STEPS };
+    if time_limit / dt > most {
         return Err(Error::InvalidOption {
-            option: "--dt",
-            value: format!("{dt:?} s"),
+            option: "--time-limit",
+            value: format!("{time_limit} s"),
             reason: format!(
-                "{time_limit} s have {:.1e} such steps, more than {MOST_STEPS:e}; take a longer step \
-                 or a lower --time-limit",
-                time_limit / dt
+                "it has {:.1e} steps of {dt:?} s, more than {most:e}{}; lower it, or take a longer \
+                 --dt",
+                time_limit / dt,
+                if is_kept { ", and each is kept for --out or --plot" } else { "" }
             ),
         });
     }

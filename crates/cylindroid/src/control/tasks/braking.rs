@@ -12,7 +12,7 @@
 use super::braking_path::{Motion, Start};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
-use crate::control::servo::{JerkLimitedStop, JointState};
+use crate::control::servo::{JerkLimitedStop, JointState, acceleration_of};
 use crate::error::Result;
 
 /// Shares of the velocities of the solver, the rest braking, that are tried in turn [-].
@@ -34,18 +34,21 @@ impl TaskServo {
             let all = velocities.iter_mut().zip(&mut accelerations).enumerate();
             for (i, (v, acceleration)) in all {
                 let (before, solved, limits) = (self.before[i], self.rates[i], &self.limits[i]);
-                let braking = if limits.jerk < f64::INFINITY {
-                    // `bounds` also keep to the velocities that the tasks ask for: not when braking.
-                    let (position, acceleration) = (state.q()[i], self.accelerations[i]);
-                    let now = JointState { position, velocity: before, acceleration };
-                    let slower = JerkLimitedStop::new(limits, before, acceleration, dt).next();
-                    self.motions.bounds(i, limits, now, dt).clamp(slower)
-                } else {
-                    let slower = (before.abs() - limits.acceleration * dt).max(0.0);
-                    self.bounds[i].clamp(slower.copysign(before))
+                let braking = || {
+                    if limits.jerk < f64::INFINITY {
+                        // `self.bounds` are cut to the velocities that the tasks ask for: not here.
+                        let (position, acceleration) = (state.q()[i], self.accelerations[i]);
+                        let now = JointState { position, velocity: before, acceleration };
+                        let slower = JerkLimitedStop::new(limits, before, acceleration, dt).next();
+                        self.motions.bounds(i, limits, now, dt).clamp(slower)
+                    } else {
+                        let slower = (before.abs() - limits.acceleration * dt).max(0.0);
+                        self.bounds[i].clamp(slower.copysign(before))
+                    }
                 };
-                *v = braking + share * (solved - braking);
-                *acceleration = (*v - before) / dt;
+                let mean = |braking| braking + share * (solved - braking);
+                *v = if share < 1.0 { mean(braking()) } else { solved };
+                *acceleration = acceleration_of(limits, self.accelerations[i], *v - before, dt);
             }
             let motion = Motion {
                 velocities: &velocities,

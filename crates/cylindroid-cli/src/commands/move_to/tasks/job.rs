@@ -52,7 +52,7 @@ impl TaskJob {
         }
         let distances = options.collisions.as_ref().map(|c| (c.gap, c.margin));
         let servo = TaskServo::new(&robot, tasks, options)?;
-        check_steps(args.time_limit, servo.dt())?;
+        check_steps(args, servo.dt())?;
         Ok(Self { robot, servo, start, time_limit: args.time_limit, distances })
     }
 }
