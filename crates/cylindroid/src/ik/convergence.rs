@@ -43,10 +43,11 @@ pub(super) fn is_admissible(mechanism: &Mechanism, q: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::is_admissible;
+    use crate::model::catalogue;
 
     #[test]
     fn what_may_be_a_solution() {
-        let robot = crate::catalogue::load("panda").unwrap();
+        let robot = catalogue::load("panda").unwrap();
         let at = |joint: usize, x: f64| {
             let mut q = robot.home().to_vec();
             q[joint] = x;
