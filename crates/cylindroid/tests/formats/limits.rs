@@ -232,7 +232,7 @@ fn robots_of_all_included_files_are_counted() {
         let robot = |k: usize| format!("[[robot]]\nname = \"r{k}\"\nmodel = \"{next}\"\n");
         written(&folder, &format!("f{i}.toml"), (0..10).map(robot).collect::<String>());
     }
-    let joint = "[[joint]]\nname = \"j\"\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\n";
+    let joint = "[[joint]]\nname = \"j\"\ntype = \"revolute\"\nbetween = [\"ground\", \"b\"]\naxis = [0, 0, 1]\norigin = [0, 0, 0]\n";
     written(&folder, "f7.toml", joint);
     let message = told(|| load_file(&folder.path().join("f0.toml")));
     assert!(message.contains("is one more than 1000 robots"), "{message}");
