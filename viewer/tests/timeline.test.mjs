@@ -124,8 +124,9 @@ test("undo and redo go through a recording that is shown, step by step, and move
     await joint(1, 0.4);
     await joint(3, 0.3);
     await page.getByRole("button", { name: /^Stop recording/ }).click();
-    assert.equal(await page.locator(".dock-marks .mark-step").count(), 2);
+    await until(page, 'document.querySelectorAll(".dock-marks .mark-step").length === 2');
     await slider(page).focus();
+    await page.keyboard.press("Home");
     await page.keyboard.press("End");
     await untilMoment(page, "moment && Math.abs(moment.q[2] - 0.3) < 1e-9");
     const [undo, redo] = ["Undo", "Redo"].map((name) => page.getByRole("button", { name: new RegExp(`^${name}`) }));

@@ -182,7 +182,7 @@ fn files_hold_every_step_of_all_tasks() {
     expected.extend(names("hand", &[&pose[..], &rest].concat()));
     expected.extend(names("elbow", &[&pose[..], &rest].concat()));
     expected.extend(names("posture", &rest));
-    expected.push("nearest".to_owned());
+    expected.extend(["nearest", "limits"].map(str::to_owned));
     assert_eq!(header[15..], expected);
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     assert_eq!(rows.len() as u64, report["steps"].as_u64().unwrap() + 1);
