@@ -134,7 +134,7 @@ test("undo and redo go through a recording that is shown, step by step, and move
     assert.equal(await redo.getAttribute("aria-disabled"), "true");
     await undo.click();
     await untilMoment(page, `Math.abs(moment.q[0] - 0.4) < 1e-9 && Math.abs(moment.q[2] - ${home[2]}) < 1e-9`);
-    await page.locator("canvas").focus();
+    await page.locator('canvas[role="application"]').focus();
     await page.keyboard.press("Control+z");
     await untilMoment(page, `Math.abs(moment.q[0] - ${home[0]}) < 1e-9`);
     await redo.click();
