@@ -146,18 +146,17 @@ fn csv(path: &Path, bytes: &[u8]) -> Result<Table> {
     for (i, record) in reader.records().enumerate() {
         let record = record.map_err(|e| cannot_read(path, &e.to_string()))?;
         let line = record.position().map_or(i as u64 + 1, csv::Position::line);
-        let is_all_numbers = record.iter().all(|cell| cell.parse::<f64>().is_ok());
         if rows.len() >= MOST_ROWS {
             return Err(too_many_rows(path));
         }
-        if i == 0 && !is_all_numbers {
-            names = Some(record.iter().map(str::to_owned).collect::<Vec<_>>());
-            continue;
-        }
         let text = || record.iter().collect::<Vec<_>>().join(",");
         let message = || format!("line {line} is not all numbers: {}", text());
-        if !is_all_numbers && names.is_none() {
-            return Err(cannot_read(path, &message()));
+        if names.is_none() && record.iter().any(|cell| cell.parse::<f64>().is_err()) {
+            if i > 0 {
+                return Err(cannot_read(path, &message()));
+            }
+            names = Some(record.iter().map(str::to_owned).collect::<Vec<_>>());
+            continue;
         }
         let cell = |(column, cell): (usize, &str)| {
             cell.parse().unwrap_or_else(|_| {

@@ -2,9 +2,9 @@
 import type { Look } from "../film/film";
 import type { Posture, Scene, State, ToServer } from "../protocol";
 import type { Session } from "../session";
+import { STEP } from "./columns";
 import { Dock } from "./dock";
 import { Elsewhere } from "./elsewhere";
-import { STEP } from "./columns";
 import { readMotion, type Motion, type Sample } from "./motion";
 import { Player } from "./player";
 import { Plots } from "./plots";
@@ -54,9 +54,7 @@ export class Timeline {
   private asking = false;
   /** Who waits until this state is shown. */
   private awaited: { index: number; resolve: (shown: boolean) => void } | null = null;
-  /** A moment of the recording is shown, or will be. */
-  private isWanted = false;
-  /** The moment that is shown or will be. */
+  /** The moment of the recording that is shown or will be. */
   private here: number | null = null;
   private later = 0;
 
@@ -202,7 +200,7 @@ export class Timeline {
   private answered(recording: Recording, moment: Moment & { index: number }): void {
     this.asking = false;
     // Somebody may have left the recording meanwhile.
-    if (recording === this.recording && this.isWanted) this.show(moment);
+    if (recording === this.recording && this.here !== null) this.show(moment);
     if (this.wanted !== null) this.tell.wake();
   }
 
@@ -242,7 +240,6 @@ export class Timeline {
 
   private want(index: number): void {
     this.wanted = this.here = index;
-    this.isWanted = true;
     if (this.awaited && index !== this.awaited.index) this.end(false);
     this.tell.moved();
     this.tell.wake();
@@ -252,7 +249,6 @@ export class Timeline {
     this.player.pause();
     this.end(false);
     this.wanted = this.here = null;
-    this.isWanted = false;
     const left = this.current !== null;
     this.current = null;
     this.tell.moved();
@@ -289,7 +285,7 @@ export class Timeline {
     if (!recording) return;
     this.player.setEnd(recording.duration);
     this.dock.show(recording.columns, recording.duration);
-    if (!this.isWanted) {
+    if (this.here === null) {
       this.dock.at(recording.duration, true);
       this.player.time = recording.duration;
       this.plots.at(recording.length - 1, recording.duration);

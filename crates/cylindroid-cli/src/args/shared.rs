@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::values::{Assignment, Joints, Numbers};
 
-/// Starts, iterations or rays at most: time grows with them.
+/// Starts, iterations, solutions, samples or rays at most: time grows with them.
 pub(crate) const MOST: u64 = 1_000_000;
 
 /// A model.
