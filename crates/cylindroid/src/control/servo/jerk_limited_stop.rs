@@ -190,24 +190,42 @@ impl JerkLimitedStop {
             highest: end.max(0.0),
             speed: self.velocity.abs().max(self.peak.abs()),
         };
-        let mut look = |i: f64| {
-            let i = clamp(i, 0.0, self.rising);
+        self.for_each_extreme(|i| {
             let (way, speed) = (self.rising_way(i), self.rising_velocity(i).abs());
             range.lowest = range.lowest.min(way);
             range.highest = range.highest.max(way);
             range.speed = range.speed.max(speed);
-        };
-        // Where the acceleration, and where the velocity changes its sign in the first phase.
+        });
+        range
+    }
+
+    /// The largest change of the position between two steps, from its value at the first of them.
+    pub(in crate::control) fn largest_change(&self, from: f64, to: f64) -> f64 {
+        let start = self.way(from);
+        let mut largest = (self.way(to) - start).abs();
+        if from < self.rising {
+            self.for_each_extreme(|i| {
+                if i > from && i < to {
+                    largest = largest.max((self.rising_way(i) - start).abs());
+                }
+            });
+        }
+        largest
+    }
+
+    /// The steps of the first phase where acceleration or velocity may change their signs.
+    fn for_each_extreme(&self, mut look: impl FnMut(f64)) {
         let top = (self.side * self.acceleration / self.change).floor();
         let (v, a) = (self.side * self.velocity, self.side * self.acceleration);
         let half = a / self.change - 0.5;
         let root = (half * half + 2.0 * v / (self.change * self.dt)).max(0.0).sqrt();
         for near in [top, (half - root).floor(), (half + root).floor()] {
             if near.is_finite() {
-                [near - 1.0, near, near + 1.0, near + 2.0].into_iter().for_each(&mut look);
+                for i in [near - 1.0, near, near + 1.0, near + 2.0] {
+                    look(clamp(i, 0.0, self.rising));
+                }
             }
         }
-        range
     }
 }
 
@@ -279,6 +297,31 @@ mod tests {
             );
         }
         assert!(longest > 1000.0);
+    }
+
+    /// Between any two steps, also of a stop that turns round, once or twice.
+    #[test]
+    fn the_largest_change_is_that_of_all_steps() {
+        let mut seed = 5;
+        let mut next = || 2.0 * crate::scalar::uniform(&mut seed) - 1.0;
+        let mut turns = 0;
+        for round in 0..2000 {
+            let limits = limits(1.0 + next().abs(), 10.0_f64.powf(1.0 + next()));
+            let v0 = [next(), 0.05 * next()][round % 2];
+            let stop = JerkLimitedStop::new(&limits, v0, 1.5 * next(), 0.004);
+            let last = stop.steps();
+            let ways: Vec<f64> = (0..=last as usize).map(|i| stop.way(i as f64)).collect();
+            let from = (0.5 * (1.0 + next()) * last).floor() as usize;
+            let mut furthest = 0.0_f64;
+            for to in from..ways.len() {
+                furthest = furthest.max((ways[to] - ways[from]).abs());
+                let told = stop.largest_change(from as f64, to as f64);
+                assert!((told - furthest).abs() < 1e-12, "{told} {furthest} {from} {to} {stop:?}");
+            }
+            let end = (ways[ways.len() - 1] - ways[0]).abs();
+            turns += usize::from(stop.largest_change(0.0, last) > 1.1 * end);
+        }
+        assert!(turns > 100, "{turns}");
     }
 
     /// A larger velocity in this step ends no lower.

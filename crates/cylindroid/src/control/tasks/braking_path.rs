@@ -3,7 +3,7 @@
 //!
 //! Formula  configuration after k steps  q_k = q + dt sum v_j, v_0 = v, v_(j+1) = v_j reduced by A dt;
 //!          all pairs apart at q_1, q_2, ... Steps are left out while no pair moves further than its
-//!          distance:  sum_c l_c |q_k - q_h|_c < d(q_h), l_c the lever of coordinate c
+//!          distance:  sum_c l_c max_(h<i<=k) |q_i - q_h|_c < d(q_h), l_c the lever of coordinate c
 //!          With a jerk limit v_j of `servo/jerk_limited_stop.rs`
 //! Units    m, rad or m of the coordinates, s
 //! Valid    trees among obstacles that rest; levers are those of the present configuration
@@ -34,11 +34,13 @@ pub(super) struct BrakingPath {
     pub(super) expected: Vec<f64>,
     /// Of the obstacles.
     pub(super) revision: u64,
-    /// A configuration of the path, and changes of the coordinates up to it and to a later one.
+    /// How each coordinate comes to rest.
+    joints: Vec<Braking>,
+    /// A configuration of the path, and changes of the coordinates: up to it, or the largest ones of a
+    /// part of the path.
     state: State,
     q: Vec<f64>,
     change: Vec<f64>,
-    later: Vec<f64>,
     /// Pairs that the path may bring together, with distances, and a row of levers for each.
     doubtful: Vec<(usize, f64)>,
     levers: Vec<f64>,
@@ -65,36 +67,61 @@ pub(super) struct Motion<'a> {
     pub(super) dt: f64,
 }
 
-impl Motion<'_> {
-    /// Steps until all joints rest.
-    fn steps(self) -> f64 {
-        let steps = |((v, a), limits): ((&f64, &f64), &Limits)| -> f64 {
-            if limits.jerk < f64::INFINITY {
-                1.0 + JerkLimitedStop::new(limits, *v, *a, self.dt).steps()
-            } else if *v == 0.0 {
-                0.0
-            } else {
-                (v.abs() / (limits.acceleration * self.dt)).floor() + 1.0
-            }
-        };
-        let all = self.velocities.iter().zip(self.accelerations).zip(self.limits);
-        all.map(steps).fold(0.0, f64::max).min(MOST_STEPS)
+/// How a coordinate comes to rest, its first step with the velocity that is looked at.
+#[derive(Debug, Clone, Copy)]
+enum Braking {
+    /// The way of the first step, and how much less each further one has.
+    Steady { way: f64, less: f64 },
+    /// The way of the first step, and the stop after it.
+    JerkLimited { way: f64, stop: JerkLimitedStop },
+}
+
+impl Braking {
+    fn new(velocity: f64, acceleration: f64, limits: &Limits, dt: f64) -> Self {
+        let way = dt * velocity;
+        if limits.jerk < f64::INFINITY {
+            let stop = JerkLimitedStop::new(limits, velocity, acceleration, dt);
+            Self::JerkLimited { way, stop }
+        } else {
+            Self::Steady { way, less: limits.acceleration * dt * dt }
+        }
     }
 
-    /// Changes of the coordinates after some steps.
-    fn change_after(self, steps: f64, change: &mut [f64]) {
-        let all = change.iter_mut().zip(self.velocities).zip(self.accelerations).zip(self.limits);
-        for (((change, v), a), limits) in all {
-            if limits.jerk < f64::INFINITY {
-                let stop = JerkLimitedStop::new(limits, *v, *a, self.dt);
-                *change = if steps > 0.0 { self.dt * v + stop.way(steps - 1.0) } else { 0.0 };
-                continue;
-            }
-            let (speed, less) = (v.abs(), limits.acceleration * self.dt);
+    /// Steps until it rests.
+    fn steps(&self) -> f64 {
+        match self {
+            Self::Steady { way: 0.0, .. } => 0.0,
             // Without an acceleration limit the first step is the last.
-            let own = steps.min((speed / less).floor() + 1.0);
-            let lost = if own > 1.0 { 0.5 * less * own * (own - 1.0) } else { 0.0 };
-            *change = if speed > 0.0 { self.dt * v.signum() * (own * speed - lost) } else { 0.0 };
+            Self::Steady { way, less } => (way.abs() / less).floor() + 1.0,
+            Self::JerkLimited { stop, .. } => 1.0 + stop.steps(),
+        }
+    }
+
+    /// Change of the coordinate after some steps.
+    fn change_after(&self, steps: f64) -> f64 {
+        if steps <= 0.0 {
+            return 0.0;
+        }
+        match self {
+            Self::Steady { way, less } => {
+                let own = steps.min(self.steps());
+                let lost = if own > 1.0 { 0.5 * less * own * (own - 1.0) } else { 0.0 };
+                way.signum() * (own * way.abs() - lost)
+            }
+            Self::JerkLimited { way, stop } => way + stop.way(steps - 1.0),
+        }
+    }
+
+    /// The largest change between two steps, or more: a joint with a jerk limit may turn round on its
+    /// way.
+    fn largest_change(&self, from: f64, to: f64) -> f64 {
+        match self {
+            Self::Steady { .. } => (self.change_after(to) - self.change_after(from)).abs(),
+            Self::JerkLimited { way, stop } => {
+                let first = if from < 1.0 && to >= 1.0 { way.abs() } else { 0.0 };
+                let from = (from - 1.0).max(0.0);
+                first + stop.largest_change(from, (to - 1.0).max(from))
+            }
         }
     }
 }
@@ -107,10 +134,10 @@ impl BrakingPath {
             is_clear: false,
             expected: vec![0.0; n],
             revision: 0,
+            joints: Vec::with_capacity(n),
             state: mechanism.state(mechanism.home())?,
             q: vec![0.0; n],
             change: vec![0.0; n],
-            later: vec![0.0; n],
             doubtful: Vec::with_capacity(MOST_PAIRS),
             levers: vec![0.0; MOST_PAIRS * n],
             velocities: vec![0.0; n],
@@ -142,8 +169,11 @@ impl BrakingPath {
         model: &mut CollisionModel,
         motion: Motion<'_>,
     ) -> Result<Option<usize>> {
-        let steps = motion.steps();
-        if let Some(pair) = self.load_doubtful(start, model, motion, steps)? {
+        self.joints.clear();
+        let all = motion.velocities.iter().zip(motion.accelerations).zip(motion.limits);
+        self.joints.extend(all.map(|((v, a), limits)| Braking::new(*v, *a, limits, motion.dt)));
+        let steps = self.joints.iter().map(Braking::steps).fold(0.0, f64::max).min(MOST_STEPS);
+        if let Some(pair) = self.load_doubtful(start, model, steps)? {
             return Ok(Some(pair));
         }
         if self.doubtful.is_empty() {
@@ -151,12 +181,13 @@ impl BrakingPath {
         }
         let mut now = 0.0;
         for _ in 0..LOOKS {
-            let clear = self.clear_until(now, steps, motion);
+            let clear = self.clear_until(now, steps);
             if clear >= steps {
                 return Ok(None);
             }
             now = clear.max(now + 1.0);
-            motion.change_after(now, &mut self.change);
+            let changes = self.change.iter_mut().zip(&self.joints);
+            changes.for_each(|(change, joint)| *change = joint.change_after(now));
             self.q.copy_from_slice(start.state.q());
             start.state.mechanism().integrate_in_place(&mut self.q, &self.change, 1.0);
             self.state.set(&self.q)?;
@@ -182,11 +213,10 @@ impl BrakingPath {
         &mut self,
         start: Start<'_>,
         model: &mut CollisionModel,
-        motion: Motion<'_>,
         steps: f64,
     ) -> Result<Option<usize>> {
         let n = self.change.len();
-        motion.change_after(steps, &mut self.change);
+        self.load_largest_changes(0.0, steps);
         let ways = (0..model.bodies().len()).map(|b| model.way(start.state, b, &self.change));
         let furthest = 2.0 * ways.fold(0.0, f64::max);
         self.doubtful.clear();
@@ -211,16 +241,14 @@ impl BrakingPath {
     }
 
     /// The last step up to which no pair can move by its distance since that of the last look.
-    fn clear_until(&mut self, now: f64, steps: f64, motion: Motion<'_>) -> f64 {
-        motion.change_after(now, &mut self.change);
+    fn clear_until(&mut self, now: f64, steps: f64) -> f64 {
         let (mut clear, mut beyond) = (now, steps);
         let n = self.change.len();
         while clear < beyond {
             let middle = (0.5 * (clear + beyond)).ceil();
-            motion.change_after(middle, &mut self.later);
-            self.later.iter_mut().zip(&self.change).for_each(|(later, now)| *later -= now);
+            self.load_largest_changes(now, middle);
             let mut pairs = self.doubtful.iter().zip(self.levers.chunks_exact(n));
-            if pairs.all(|((_, distance), row)| way_with(row, &self.later) < *distance) {
+            if pairs.all(|((_, distance), row)| way_with(row, &self.change) < *distance) {
                 clear = middle;
             } else {
                 beyond = middle - 1.0;
@@ -228,10 +256,16 @@ impl BrakingPath {
         }
         clear
     }
+
+    /// The largest changes of the coordinates between two steps.
+    fn load_largest_changes(&mut self, from: f64, to: f64) {
+        let changes = self.change.iter_mut().zip(&self.joints);
+        changes.for_each(|(change, joint)| *change = joint.largest_change(from, to));
+    }
 }
 
-/// The way of a pair with these levers.
+/// The way of a pair with these levers, at most, for these largest changes.
 fn way_with(levers: &[f64], change: &[f64]) -> f64 {
     let parts = levers.iter().zip(change).filter(|(_, change)| **change != 0.0);
-    parts.map(|(lever, change)| lever * change.abs()).sum()
+    parts.map(|(lever, change)| lever * change).sum()
 }

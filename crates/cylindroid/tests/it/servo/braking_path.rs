@@ -5,7 +5,7 @@ use cylindroid::control::{
     CollisionAvoidance, MotionTask, StoppedBy, Task, TaskObjective, TaskServo, TaskServoOptions,
 };
 use cylindroid::model::{Collision, Geometry, JointKind, JointSpec, Limits, Link};
-use cylindroid::{Mechanism, Pose, Vec3};
+use cylindroid::{Mechanism, Pose, Rotation, Vec3};
 
 /// A ball of 5 cm on two slides, x and y, of unequal drives.
 fn slides(accelerations: [f64; 2]) -> Mechanism {
@@ -35,7 +35,7 @@ fn a_wedge_is_entered_no_faster_than_braking_ends() {
         let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
         let wall = Geometry::Box { size: Vec3::new(6.0, 0.1, 1.0) };
         for (name, sign) in [("below", -1.0), ("above", 1.0)] {
-            let turn = cylindroid::Rotation::exp(Vec3::Z * (-sign * slope));
+            let turn = Rotation::exp(Vec3::Z * (-sign * slope));
             let middle = Vec3::new(1.0, 0.0, 0.0) + turn * Vec3::new(-3.0, sign * 0.05, 0.0);
             let pose = Pose { rotation: turn, translation: middle };
             model.add_obstacle(name, &wall, pose).unwrap();
@@ -66,5 +66,102 @@ fn a_wedge_is_entered_no_faster_than_braking_ends() {
         // At rest in the wedge, near both walls.
         assert!(near.iter().all(|near| near.distance < 0.01), "{near:?} at {q:?}");
         assert!(servo.joint_velocities().iter().all(|v| v.abs() < 1e-3));
+    }
+}
+
+/// A bar on two slides and a hinge, with limits of all jerks, and two walls that form a wedge. Lengths
+/// are `size` times those in metres, and all of it stands at `world`.
+fn bar_in_a_wedge(world: Pose, size: f64) -> (Mechanism, CollisionModel) {
+    let mut builder = Mechanism::builder("bar in a wedge");
+    let bar = Geometry::Box { size: Vec3::new(0.3, 0.06, 0.06) * size };
+    builder.link(Link {
+        collisions: vec![Collision { geometry: bar, ..Collision::default() }],
+        ..Link::named("bar")
+    });
+    for (i, (name, ends)) in
+        [("x", ["base", "beam"]), ("y", ["beam", "cart"]), ("turn", ["cart", "bar"])]
+            .into_iter()
+            .enumerate()
+    {
+        let kind = [JointKind::Prismatic, JointKind::Prismatic, JointKind::Revolute][i];
+        let length = if kind == JointKind::Prismatic { size } else { 1.0 };
+        let limits = Limits {
+            lower: -2.0 * length,
+            upper: 2.0 * length,
+            velocity: 2.0 * length,
+            acceleration: [3.0, 1.0, 2.0][i] * length,
+            jerk: [40.0, 8.0, 15.0][i] * length,
+            ..Limits::NONE
+        };
+        builder.joint(JointSpec {
+            axis: [Vec3::X, Vec3::Y, Vec3::Z][i],
+            parent_from_joint: if i == 0 { world } else { Pose::IDENTITY },
+            limits,
+            ..JointSpec::new(name, kind, ends[0], ends[1])
+        });
+    }
+    let robot = builder.build().unwrap();
+    let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
+    let wall = Geometry::Box { size: Vec3::new(6.0, 0.1, 1.0) * size };
+    for (name, sign) in [("below", -1.0), ("above", 1.0)] {
+        let turn = Rotation::exp(Vec3::Z * (-sign * 0.3));
+        let middle = Vec3::X + turn * Vec3::new(-3.0, sign * 0.05, 0.0);
+        let pose = Pose { rotation: turn, translation: middle * size };
+        model.add_obstacle(name, &wall, world * pose).unwrap();
+    }
+    (robot, model)
+}
+
+/// The way into the wedge, step by step, in angles and metres.
+fn way_into_the_wedge(world: Pose, size: f64) -> Vec<Vec<f64>> {
+    let (robot, mut model) = bar_in_a_wedge(world, size);
+    let mut options = TaskServoOptions::new(&robot);
+    options.dt = 4e-3;
+    options.length = size;
+    // The slides cost as much in every unit.
+    options.joint_weights = vec![1.0 / (size * size), 1.0 / (size * size), 1.0];
+    let (gap, margin) = (0.002 * size, 0.1 * size);
+    options.collisions = Some(CollisionAvoidance { model: model.clone(), gap, margin });
+    let goal = Pose {
+        rotation: Rotation::exp(Vec3::Z * 1.2),
+        translation: Vec3::new(1.5, 0.0, 0.0) * size,
+    };
+    let objective = TaskObjective::Frame {
+        end_effector: robot.tool().into(),
+        components: Task::POSE,
+        target: (world * goal).into(),
+    };
+    let mut task = MotionTask { gain: 20.0, ..MotionTask::new("bar", objective) };
+    task.tolerance.position *= size;
+    let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
+    let mut q = vec![-1.5 * size, 0.1 * size, -0.4];
+    let mut near = Vec::new();
+    let mut way = Vec::new();
+    for _ in 0..1000 {
+        servo.step(&q).unwrap();
+        servo.advance(&mut q);
+        model.near(&robot.state(&q).unwrap(), size, &mut near).unwrap();
+        assert!(near.iter().all(|near| near.distance > 0.0), "{near:?} at {q:?}");
+        way.push(vec![q[0] / size, q[1] / size, q[2]]);
+    }
+    let stop = servo.reports()[0].stopped_by;
+    assert!(matches!(stop, Some(StoppedBy::Distance { .. })), "{stop:?}");
+    way
+}
+
+/// Bodies are stopped at the same places in every frame and unit of length.
+#[test]
+fn the_way_into_a_wedge_depends_on_no_frame_and_no_unit() {
+    let own = way_into_the_wedge(Pose::IDENTITY, 1.0);
+    let elsewhere = Pose {
+        rotation: Rotation::exp(Vec3::new(0.4, -1.1, 0.7)),
+        translation: Vec3::new(0.3, -0.2, 0.5),
+    };
+    for (world, size) in [(elsewhere, 1.0), (Pose::IDENTITY, 1e-3), (elsewhere, 40.0)] {
+        let other = way_into_the_wedge(world, size);
+        for (step, (a, b)) in own.iter().zip(&other).enumerate() {
+            let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-6, "step {step} at {size}: {apart:e}");
+        }
     }
 }
