@@ -1,7 +1,8 @@
-//! The command line of cylindroid, and the server of its viewer for programs that show a robot.
+//! The command line of cylindroid, and for other programs the server of its viewer and its files of
+//! numbers.
 //!
 //! The binary `cylindroid` is [`run`], and so is the command of the Python package, which starts the
-//! viewer by [`show::Viewer`].
+//! viewer by [`show::Viewer`] and reads files of configurations by [`numbers`].
 
 mod args;
 mod commands;
@@ -23,6 +24,11 @@ mod viewer;
 pub mod show {
     //! The viewer inside another program: a page that follows it.
     pub use crate::viewer::{Drag, Drawing, DrawnShape, ShowOptions, Viewer};
+}
+
+pub mod numbers {
+    //! Files of numbers inside another program: CSV and Parquet, by the names of their columns.
+    pub use crate::number_file::{is_arrow, named_columns, named_configurations};
 }
 
 #[cfg(fuzzing)]

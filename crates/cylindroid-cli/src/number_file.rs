@@ -1,6 +1,8 @@
 //! Files of rows of numbers: CSV, JSON lists of lists, and Parquet for configurations.
 
 use std::fmt;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::Path;
 
 use cylindroid::model::read_regular_file;
@@ -56,6 +58,23 @@ impl Table {
     }
 }
 
+/// True for the name of an Arrow file, which Python alone reads.
+#[must_use]
+pub fn is_arrow(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default();
+    ["arrow", "feather", "ipc"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+}
+
+/// True for a Parquet file, by its name or by its beginning.
+fn is_parquet(path: &Path) -> bool {
+    let mut beginning = [0; 4];
+    // Opening a pipe would wait for its writer.
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"))
+        || fs::metadata(path).is_ok_and(|about| about.is_file())
+            && File::open(path).and_then(|mut file| file.read_exact(&mut beginning)).is_ok()
+            && beginning == *b"PAR1"
+}
+
 /// The rows of a regular file of at most [`LARGEST`] bytes and [`MOST_ROWS`] rows; CSV unless its
 /// name ends in .json. A first line of CSV that is no numbers names the columns.
 pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
@@ -65,35 +84,81 @@ pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
 }
 
 fn table(path: &Path) -> Result<Table> {
+    if is_arrow(path) && path.exists() {
+        let (from, to) = (path.to_string_lossy(), path.with_extension("parquet"));
+        let message = format!(
+            "it is an Arrow file, which cy.sweep(configurations=...) reads in Python; elsewhere convert \
+             it: pyarrow.parquet.write_table(pyarrow.feather.read_table({from:?}), {:?})",
+            to.to_string_lossy()
+        );
+        return Err(cannot_read(path, &message));
+    }
     let bytes = read_regular_file(path, LARGEST)?;
     let is_json = path.extension().is_some_and(|e| e == "json");
     if is_json { json(path, &bytes) } else { csv(path, &bytes) }
+}
+
+/// The table of a file whose columns have names.
+fn named_table(path: &Path) -> Result<Table> {
+    let table = table(path)?;
+    if table.names.is_some() {
+        return Ok(table);
+    }
+    let remedy = "write them into the first line of a CSV file, or give an array";
+    Err(cannot_read(path, &format!("its columns have no names; {remedy}")))
 }
 
 /// Configurations one after the other, of the coordinates `names`. Where columns are named, those
 /// of the coordinates are read, as in a motion of `move` `q.name` or `name`, and others are not;
 /// otherwise, a row has a number for each.
 pub(crate) fn configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
-    if path.extension().is_some_and(|e| e == "parquet") {
+    if is_parquet(path) {
         return parquet_configurations(path, names);
     }
-    read_columns(path, names, coordinate_column)
+    read_columns(path, &table(path)?, names, coordinate_column)
+}
+
+/// The same, but never by place.
+///
+/// # Errors
+/// A file that cannot be read or has too many rows, a missing column, an entry that is no number,
+/// columns without names.
+pub fn named_configurations(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    if is_parquet(path) {
+        return parquet_configurations(path, names);
+    }
+    read_columns(path, &named_table(path)?, names, coordinate_column)
 }
 
 /// The columns of these names, a row after the other; without names, a row has a number for each.
 pub(crate) fn columns(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
-    if path.extension().is_some_and(|e| e == "parquet") {
+    if is_parquet(path) {
         return parquet_columns(path, names);
     }
-    read_columns(path, names, |columns, name| columns.iter().position(|c| c == name))
+    read_columns(path, &table(path)?, names, own_column)
+}
+
+/// The same, but never by place.
+///
+/// # Errors
+/// As [`named_configurations`].
+pub fn named_columns(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
+    if is_parquet(path) {
+        return parquet_columns(path, names);
+    }
+    read_columns(path, &named_table(path)?, names, own_column)
+}
+
+fn own_column(columns: &[String], name: &str) -> Option<usize> {
+    columns.iter().position(|column| column == name)
 }
 
 fn read_columns(
     path: &Path,
+    table: &Table,
     names: &[&str],
     find: impl Fn(&[String], &str) -> Option<usize>,
 ) -> Result<Vec<f64>> {
-    let table = table(path)?;
     let places: Vec<usize> = match &table.names {
         None => (0..names.len()).collect(),
         Some(columns) => {

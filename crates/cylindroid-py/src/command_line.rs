@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 /// -------
 /// int
 ///     The exit code: 0 for success, 1 for a negative answer, 2 for an error, which was printed, 130
-///     for a sweep that Ctrl-C stopped.
+///     for a run that Ctrl-C stopped.
 #[pyfunction]
 pub(crate) fn run_command_line(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| cylindroid_cli::run(words)).code()

@@ -1,5 +1,6 @@
 //! Sweeps: quantities of many configurations and designs, computed here or part by part.
 
+mod files;
 mod own_columns;
 
 use std::num::NonZeroUsize;
@@ -8,17 +9,17 @@ use std::path::PathBuf;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, AxisKinds, DesignSpace, ParameterRange, Part, Quantity, SharedFolder, Source, Summary,
-    Sweep, SweepOptions, Table, Values, VelocityMetric, VoxelGrid, WriteOptions, parquet_columns,
-    parquet_configurations,
+    Sweep, SweepOptions, Table, Values, VelocityMetric, VoxelGrid, WriteOptions,
 };
 use cylindroid::{Pose, Vec3};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
+use self::files::{configurations, poses};
 use self::own_columns::{Given, OwnColumns};
 use crate::arrays::Numbers;
-use crate::coordinates::{Coordinates, Rows};
+use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
 
@@ -425,13 +426,13 @@ impl Chosen<'_, '_> {
             ("q", self.q.is_some()),
         ];
         let other = others.iter().find(|(_, is_given)| *is_given).map(|(name, _)| *name);
-        if let Some(poses) = self.poses {
+        if let Some(given) = self.poses {
             if let Some(other) = other.or(self.reach.as_ref().map(|_| "reach")) {
                 let reason = "poses have configurations of their own; leave it out";
                 return Err(Failure::option(other, "given beside poses", reason));
             }
             let task = self.task.map_or_else(|| Task::named("pose", &robot.inner), Ok)?;
-            return Ok((pose_rows(&poses, task)?, split.parameters));
+            return Ok((poses(&given, task)?, split.parameters));
         }
         if let Some(reach) = self.reach {
             if other.is_some() {
@@ -443,9 +444,7 @@ impl Chosen<'_, '_> {
         let source = match (self.samples, grid, self.configurations) {
             (Some(count), false, None) => Source::Samples { count, seed: self.seed },
             (None, true, None) => Source::Grid { axes: split.coordinates, rest },
-            (None, false, Some(configurations)) => {
-                Source::Configurations(rows(robot, &configurations)?)
-            }
+            (None, false, Some(given)) => Source::Configurations(configurations(robot, &given)?),
             (None, false, None) if designs && rest.is_empty() => Source::Home,
             (None, false, None) if designs => Source::Configurations(rest),
             _ => {
@@ -475,25 +474,4 @@ pub(crate) fn ranges(vary: &Bound<'_, PyDict>) -> Result<Vec<ParameterRange>> {
             Ok(ParameterRange { name, from, to })
         })
         .collect()
-}
-
-/// Poses of an array or of a file.
-fn pose_rows(given: &Bound<'_, PyAny>, task: Task) -> Result<Source> {
-    if let Ok(path) = given.extract::<PathBuf>() {
-        let numbers = parquet_columns(&path, Source::pose_columns(task))?;
-        return Ok(Source::poses(&numbers, task)?);
-    }
-    let poses: Numbers<'_> = entry("poses", given)?;
-    Ok(Source::Poses { targets: poses.poses("poses")?, task })
-}
-
-/// Configurations one after the other, of an array, of columns with names, or of a file.
-fn rows(robot: &PyMechanism, given: &Bound<'_, PyAny>) -> Result<Vec<f64>> {
-    let mechanism = &robot.inner;
-    if let Ok(path) = given.extract::<PathBuf>() {
-        let names: Vec<&str> = mechanism.coordinates().iter().map(|c| c.name.as_str()).collect();
-        return Ok(parquet_configurations(&path, &names)?);
-    }
-    let given: Coordinates<'_> = entry("configurations", given)?;
-    Ok(Rows::of(mechanism, "configurations", &given)?.values.to_vec())
 }

@@ -10,7 +10,7 @@ use crate::arrays::{self, Numbers};
 use crate::coordinates::Coordinates;
 use crate::error::{Result, argument, count, entry};
 use crate::mechanism::PyMechanism;
-use crate::sweep::axes;
+use crate::sweep::{axes, count_of, go_on};
 
 /// The workspace of a mechanism over components of its platform's pose.
 ///
@@ -122,17 +122,9 @@ impl PyWorkspaceMap {
         py: Python<'py>,
         #[pyo3(from_py_with = argument)] mode: Option<usize>,
     ) -> Result<Bound<'py, PyDict>> {
-        let region = match mode.map(|mode| (mode, self.map.modes.get(mode))) {
+        let region = match mode {
             None => self.map.workspace(),
-            Some((_, Some(mode))) => self.map.workspace_of(mode),
-            Some((mode, None)) => {
-                return Err(Error::InvalidOption {
-                    option: "mode",
-                    value: mode.to_string(),
-                    reason: format!("the map has {} modes, from 0 on", self.map.modes.len()),
-                }
-                .into());
-            }
+            Some(mode) => self.map.workspace_of(mode)?,
         };
         let holes = region.holes.into_iter().map(|hole| {
             let dict = PyDict::new(py);
@@ -225,6 +217,8 @@ impl PyWorkspaceMap {
 ///     Selects other random restarts.
 /// loci : bool
 ///     Follow the curves, for two axes.
+/// threads : int, optional
+///     Default: as many as the machine has. The map does not depend on it.
 ///
 /// Returns
 /// -------
@@ -243,7 +237,7 @@ impl PyWorkspaceMap {
 /// (4, (221,))
 #[pyfunction]
 #[pyo3(signature = (mechanism, over, at = None, free = None, frame = None, tool = None, q = None,
-    starts = 64, seed = 0, loci = true))]
+    starts = 64, seed = 0, loci = true, threads = None))]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn workspace_map<'py>(
     py: Python<'py>,
@@ -257,6 +251,7 @@ pub(crate) fn workspace_map<'py>(
     #[pyo3(from_py_with = count)] starts: usize,
     #[pyo3(from_py_with = argument)] seed: u64,
     #[pyo3(from_py_with = argument)] loci: bool,
+    #[pyo3(from_py_with = argument)] threads: Option<usize>,
 ) -> Result<PyWorkspaceMap> {
     let robot = &*mechanism;
     let mechanism = robot.inner.clone();
@@ -269,7 +264,15 @@ pub(crate) fn workspace_map<'py>(
         seed,
         loci,
     };
-    let map = py.detach(|| Map::of(&mechanism, options)).map_err(of_start)?;
+    let threads = count_of(threads)?;
+    let mut raised = None;
+    let found = py.detach(|| Map::run(&mechanism, options, threads, |_| go_on(&mut raised)));
+    if let Some(error) = raised {
+        return Err(error.into());
+    }
+    let Some(map) = found.map_err(of_start)? else {
+        return Err(pyo3::exceptions::PyKeyboardInterrupt::new_err(()).into());
+    };
     let names = mechanism.coordinates().iter().map(|c| c.name.clone()).collect();
     Ok(PyWorkspaceMap { map, names })
 }

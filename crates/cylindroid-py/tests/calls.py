@@ -389,7 +389,7 @@ def calls():
         ("workspace_map", cy.workspace_map,
          {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
           "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,
-          "loci": False}),
+          "loci": False, "threads": 1}),
         ("WorkspaceMap.workspace",
          cy.workspace_map(FIVE_BAR, {"x": (0.5, 1.5, 2)}, at={"y": 1.5}).workspace, {"mode": 0}),
         ("singularity_free_zone", cy.singularity_free_zone,

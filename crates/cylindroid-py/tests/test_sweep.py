@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -126,6 +127,92 @@ def test_files_of_other_programs(tmp_path):
         cy.sweep(robot, configurations=tmp_path / "zstd.parquet")
     again = cy.sweep(robot, configurations=table, quantities=["pose"])
     assert np.array_equal(again["x"], found["x"])
+
+
+def turned(robot, rows=50):
+    """Columns of a table, those of the joints in the reverse order beside others; and the positions."""
+    found = cy.sweep(robot, samples=rows, quantities=["pose"])
+    joints = {name: found[name] for name in reversed(robot.joint_names)}
+    return {"note": ["a"] * rows, "x": np.arange(rows) + 0.5, **joints}, found
+
+
+def same(found, expected):
+    return all(np.array_equal(found[name], expected[name]) for name in expected)
+
+
+def test_files_of_arrow(tmp_path, monkeypatch):
+    """Files and streams, of one or several pieces, compressed; by the names of the joints."""
+    import pyarrow
+    from pyarrow import feather, ipc
+
+    robot = cy.load("youbot")
+    columns, expected = turned(robot)
+    table = pyarrow.table(columns)
+    for compression in ("lz4", "zstd", "uncompressed"):
+        path = tmp_path / f"{compression}.feather"
+        feather.write_feather(table, path, compression=compression)
+        assert same(cy.sweep(robot, configurations=path, quantities=["pose"]), expected)
+    for opened, name in [(ipc.new_file, "file.ARROW"), (ipc.new_stream, "stream.ipc")]:
+        path = tmp_path / name
+        with pyarrow.OSFile(str(path), "wb") as sink, opened(sink, table.schema) as writer:
+            writer.write_table(table, max_chunksize=20)
+        assert same(cy.sweep(robot, configurations=str(path), quantities=["pose"]), expected)
+        # Workers read the file themselves.
+        with ThreadPoolExecutor(2) as workers:
+            found = cy.sweep(robot, configurations=path, quantities=["pose"], engine=workers)
+        assert same(found, expected)
+    with pytest.raises(cy.InvalidOptionError, match="configurations.*no column 'panda_joint1'"):
+        cy.sweep(cy.load("panda"), configurations=path)
+    with pytest.raises(cy.MissingFileError, match="none.arrow"):
+        cy.sweep(robot, configurations=tmp_path / "none.arrow")
+    (tmp_path / "folder.arrow").mkdir()
+    with pytest.raises(cy.UnreadableFileError, match="not a regular file"):
+        cy.sweep(robot, configurations=tmp_path / "folder.arrow")
+    for content in (b"", b"ARROW1", b"ARROW1\0\0 and no more of it", b"x" * 100):
+        (tmp_path / "broken.arrow").write_bytes(content)
+        with pytest.raises(cy.UnreadableFileError, match="cannot read .*broken.arrow"):
+            cy.sweep(robot, configurations=tmp_path / "broken.arrow")
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(cy.InvalidOptionError, match="needs pyarrow: pip install pyarrow"):
+        cy.sweep(robot, configurations=path)
+
+
+def test_files_of_csv(tmp_path):
+    """As on the command line, but never by place: a file without names is refused."""
+    import pyarrow
+
+    robot = cy.load("youbot")
+    columns, expected = turned(robot)
+    names, path = list(columns), tmp_path / "turned.csv"
+
+    def write(first, columns):
+        rows = zip(*columns.values())
+        lines = [",".join(x if isinstance(x, str) else repr(float(x)) for x in row) for row in rows]
+        path.write_text("\n".join([*first, *lines]))
+
+    write([",".join(names)], columns)
+    for given in (path, str(path)):
+        assert same(cy.sweep(robot, configurations=given, quantities=["pose"]), expected)
+    with pytest.raises(cy.UnreadableFileError, match="no column 'panda_joint1' among note, x"):
+        cy.sweep(cy.load("panda"), configurations=path)
+    # As in the motions of move.
+    write([",".join(f"q.{name}" if name in robot.joint_names else name for name in names)], columns)
+    assert same(cy.sweep(robot, configurations=path, quantities=["pose"]), expected)
+    write([], {name: expected[name] for name in robot.joint_names})
+    with pytest.raises(cy.UnreadableFileError, match="its columns have no names"):
+        cy.sweep(robot, configurations=path)
+    path.write_text(",".join(robot.joint_names) + "\n0,0,a,0,0\n")
+    with pytest.raises(cy.UnreadableFileError, match="line 2 is not all numbers"):
+        cy.sweep(robot, configurations=path)
+    with pytest.raises(cy.MissingFileError):
+        cy.sweep(robot, configurations=tmp_path / "none.csv")
+    poses = ["x", "y", "z", "qw", "qx", "qy", "qz"]
+    write([",".join(reversed(poses))], {name: expected[name] for name in reversed(poses)})
+    assert cy.sweep(robot, poses=path, quantities=[])["reached"].all()
+    # Parquet by what is in it, whatever its name.
+    parquet.write_table(pyarrow.table(columns), tmp_path / "table.pq")
+    found = cy.sweep(robot, configurations=tmp_path / "table.pq", quantities=["pose"])
+    assert same(found, expected)
 
 
 def test_columns_of_other_kinds(tmp_path):

@@ -1,16 +1,20 @@
 """Maps: columns of working modes, loci, what is held, bad input."""
 
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 
 import cylindroid as cy
 
+OVER = {"x": (-1.03, 3.01, 15), "y": (-0.51, 3.07, 15)}
+
 
 @pytest.fixture(scope="module")
 def found():
-    return cy.workspace_map(
-        cy.load("five-bar"), {"x": (-1.03, 3.01, 15), "y": (-0.51, 3.07, 15)}, starts=32
-    )
+    return cy.workspace_map(cy.load("five-bar"), OVER, starts=32)
 
 
 def test_columns_and_loci(found):
@@ -34,6 +38,26 @@ def test_columns_and_loci(found):
         near = [abs(left - 1), abs(left - 3), abs(right - root + 1), abs(right - root - 1)]
         assert np.min(near, axis=0).max() < 1e-8
     assert "4 modes" in repr(found)
+
+
+def test_threads_change_nothing(found):
+    for threads in (1, 3):
+        again = cy.workspace_map(cy.load("five-bar"), OVER, starts=32, threads=threads)
+        assert len(again.modes) == len(found.modes) and len(again.loci) == len(found.loci)
+        for mode, other in zip(again.modes, found.modes):
+            assert all(np.array_equal(mode[name], other[name], equal_nan=True) for name in other)
+        for locus, other in zip(again.loci, found.loci):
+            assert np.array_equal(locus["q"], other["q"]) and locus["modes"] == other["modes"]
+
+
+def test_interrupts_end_a_map():
+    """Soon, not after a minute."""
+    over = {"x": (-1.03, 3.01, 900), "y": (-2.51, 2.57, 900)}
+    threading.Timer(1.0, signal.raise_signal, [signal.SIGINT]).start()
+    began = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        cy.workspace_map(cy.load("five-bar"), over)
+    assert time.monotonic() - began < 30
 
 
 def test_workspaces_have_sizes_and_holes(found):
@@ -75,6 +99,7 @@ def test_input_is_checked():
         (lambda: cy.workspace_map(robot, good, free=["x"]), cy.InvalidOptionError),
         (lambda: cy.workspace_map(robot, good, q=[0.0]), cy.DimensionError),
         (lambda: cy.workspace_map(robot, good, starts=0), cy.InvalidOptionError),
+        (lambda: cy.workspace_map(robot, good, threads=0), cy.InvalidOptionError),
     ]:
         with pytest.raises(kind):
             call()

@@ -1,5 +1,6 @@
 //! The arguments of `map`.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -21,7 +22,7 @@ by Newton's method and followed by predictor and corrector, for two axes.
 Components that are neither axes nor given keep their value at the start as far as the mechanism has \
 freedoms for them, and follow otherwise.
 
-Exit code 0 if a mode is found, 1 if not, 2 on an error.";
+Exit code 0 if a mode is found, 1 if not, 2 on an error, 130 after an interrupt.";
 
 pub(crate) const EXAMPLES: &str = "\
 Examples:
@@ -82,4 +83,8 @@ pub(crate) struct MapArgs {
     /// Draw two axes as an SVG, a panel for each mode
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
+
+    /// Number of threads [default: that of the processor]
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
 }

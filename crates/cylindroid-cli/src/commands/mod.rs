@@ -14,6 +14,7 @@ mod map;
 mod models;
 pub(crate) mod move_to;
 mod optimise;
+mod progress;
 pub(crate) mod screws;
 pub(crate) mod shared;
 mod sweep;

@@ -13,7 +13,7 @@ use crate::commands::shared::{
     Style, all_actuated, configuration, end_effector, limited, load, within_limits,
 };
 use crate::exit::Exit;
-use crate::viewer::{Server, Start, StartBodies, Watch, check_count, page_is_built};
+use crate::viewer::{Server, Start, StartBodies, Watch, check_count, page_is_built, random_name};
 
 /// The usual port: an address that can be kept, with what the browser remembers of it.
 const PORT: u16 = 7411;
@@ -102,9 +102,7 @@ async fn listening(start: Start, args: &ViewArgs, token: &str) -> anyhow::Result
 
 /// A path that cannot be guessed: 128 random bits in hexadecimal.
 fn random_token() -> anyhow::Result<String> {
-    let mut bits = [0; 16];
-    getrandom::fill(&mut bits).map_err(|error| anyhow::anyhow!("--token: {error}"))?;
-    Ok(bits.iter().map(|byte| format!("{byte:02x}")).collect())
+    random_name::<16>().map_err(|error| anyhow::anyhow!("--token: {error}"))
 }
 
 const NOT_BUILT: &str = "the page is not built, only the protocol is served; run `cargo xtask \

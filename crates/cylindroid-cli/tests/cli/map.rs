@@ -1,6 +1,12 @@
 //! Maps: reports, files, pictures, bad input.
 
 use std::fs;
+#[cfg(target_os = "linux")]
+use std::process::{Command, Stdio};
+#[cfg(target_os = "linux")]
+use std::thread::sleep;
+#[cfg(target_os = "linux")]
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -74,6 +80,48 @@ fn other_drives() {
         report["loci"].as_array().unwrap().iter().map(|l| &l["kind"]).collect();
     // Its legs have links of equal lengths: where one folds, its end is on a joint of the ground.
     assert!(kinds.contains(&&"type II".into()), "{kinds:?}");
+}
+
+/// As `sweep` has them, and without a difference.
+#[test]
+fn threads() {
+    let by = |count: &str| text(&[&OVER[..], &["--json", "--threads", count]].concat());
+    assert_eq!(by("1"), by("3"));
+    let message = refused(&[&OVER[..], &["--threads", "0"]].concat());
+    assert!(message.contains("--threads"), "{message}");
+}
+
+/// Ctrl-C ends a map in order, without a file.
+#[cfg(target_os = "linux")]
+#[test]
+fn interrupted() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_cylindroid"))
+        .args(["map", "five-bar", "--over", "x=-1.03:3:700", "--over", "y=-1.01:3:700"])
+        .args(["--out", "map.csv", "--plot", "map.svg"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // As soon as it listens to the signal.
+    let status = format!("/proc/{}/status", child.id());
+    let listens = || {
+        let text = fs::read_to_string(&status).unwrap();
+        let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+        u64::from_str_radix(caught.trim(), 16).unwrap() & 2 != 0
+    };
+    while !listens() {
+        assert_eq!(child.try_wait().unwrap(), None);
+        sleep(Duration::from_millis(1));
+    }
+    sleep(Duration::from_millis(200));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    // No bar where stderr is no terminal.
+    assert_eq!((output.stdout, output.stderr), (Vec::new(), b"interrupted\n".to_vec()));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
 /// Held, free and given components.

@@ -90,6 +90,17 @@ fn configurations_of_files() {
     assert_eq!(json(&found, 0)["rows"].as_array().unwrap().len(), 300);
     let message = refused(&["sweep", "panda", "--configurations", &part]);
     assert!(message.contains("no column 'panda_joint1' among index, arm_joint_1"), "{message}");
+    // Arrow files are Python's: the error says how they are converted.
+    let arrow = at("samples.arrow");
+    let missing = refused(&["sweep", "panda", "--configurations", &arrow]);
+    assert!(!missing.contains("Arrow"), "{missing}");
+    fs::write(&arrow, "ARROW1").unwrap();
+    for command in ["sweep", "manipulability"] {
+        let message = refused(&[command, "panda", "--configurations", &arrow]);
+        for part in ["cy.sweep", "pyarrow.feather.read_table", "samples.parquet"] {
+            assert!(message.contains(part), "{message}");
+        }
+    }
 }
 
 /// Poses of a sweep are reached again, one farther away is not; positions alone without quaternions.

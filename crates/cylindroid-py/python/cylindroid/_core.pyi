@@ -2338,5 +2338,6 @@ def workspace_map(
     starts: int = 64,
     seed: int = 0,
     loci: bool = True,
+    threads: int | None = None,
 ) -> WorkspaceMap: ...
 def wrench_pitch_form(a: ArrayLike, b: ArrayLike, h: float) -> float: ...

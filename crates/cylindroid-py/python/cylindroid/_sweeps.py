@@ -109,9 +109,10 @@ def sweep(
         designs alone, the configuration is home, or `q`.
     q : array_like, (n,), optional
         The other coordinates of a grid [rad or m]. Default: home.
-    configurations : array_like, (N, n), mapping, DataFrame or path of a Parquet file, optional
+    configurations : array_like, (N, n), mapping, DataFrame or path, optional
         Configurations [rad or m]; where columns have names, those of the coordinates are taken, in
-        any order.
+        any order. Files have names always: CSV with a first line of them, Parquet, and Arrow ('.arrow',
+        '.feather' or '.ipc'), which needs pyarrow.
     quantities : sequence of str
         Of 'pose', 'jacobian', 'singular_values', 'smallest_singular_value', 'condition',
         'yoshikawa', 'limit_distance', 'payload', 'gibson_hunt', 'measures'; of closed chains
@@ -164,7 +165,7 @@ def sweep(
         Rotations about each direction; 0: any, for arms of five joints.
     reach_from : array_like, (4, 4), optional
         Placement of the axes of `reach` in the world. Default: the world.
-    poses : array_like, (N, 4, 4), or path of a Parquet file, optional
+    poses : array_like, (N, 4, 4), or path of a CSV or Parquet file, optional
         Poses `world_from_tool` that inverse kinematics reaches from home, in the components of `task`,
         positions within 1e-6 of the reach of the mechanism; a file has the columns 'x', 'y', 'z' [m] and, where rotations count, the quaternion
         'qw', 'qx', 'qy', 'qz'.

@@ -61,6 +61,7 @@ pub use position::parametric_model::ParametricModel;
 pub(crate) use position::platform::{Platform, PlatformChain, PlatformRotation};
 #[cfg(feature = "sweep")]
 pub(crate) use position::{
+    assembly_modes::assembly_modes_while,
     configuration_signature::{Landmarks, link_poses, signature_distance},
     initial_guesses::perturbed,
     loop_equations::LoopEquations,

@@ -43,11 +43,11 @@ impl Sweep {
     ) -> Result<Option<Table>> {
         self.check_memory()?;
         let mut parts: Vec<Option<Table>> = vec![None; self.parts()];
-        let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
+        let state = Cell::new(Progress::of_rows(self.rows()));
         let work = |(): &mut (), part: usize| self.table(self.rows_of(part));
         let finished = |part: usize, table: Table| {
             let done = state.get().done + table.rows() as u64;
-            state.set(Progress { rows: self.rows(), done, computed: done });
+            state.set(Progress { done, computed: done, ..state.get() });
             parts[part] = Some(table);
         };
         run_parts(self.parts(), threads, work, finished, || Ok(observe(&state.get())))?;

@@ -36,15 +36,25 @@ pub struct WriteOptions {
     pub resume: bool,
 }
 
-/// The state of a running sweep.
+/// The state of a running sweep or map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// Rows of the sweep.
+    /// What is counted: "rows" of a sweep; of a map "starts" (random restarts that look for working
+    /// modes), then "cells" of the modes that are known so far, then "seeds" of curves.
+    pub unit: &'static str,
+    /// Rows of the sweep, or how many there are of what is counted.
     pub rows: u64,
     /// Rows in finished parts, those of earlier runs included.
     pub done: u64,
     /// Rows that this run computed.
     pub computed: u64,
+}
+
+impl Progress {
+    /// At the beginning of a sweep of this many rows.
+    pub(super) const fn of_rows(rows: u64) -> Self {
+        Self { unit: "rows", rows, done: 0, computed: 0 }
+    }
 }
 
 /// The result of writing a sweep.
@@ -80,7 +90,7 @@ impl Sweep {
         let shared = SharedFolder::open(self, folder, options.resume)?;
         // Listed until they are verified, so that a stop meanwhile loses nothing.
         let parts = RefCell::new(shared.listed.clone());
-        let state = Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
+        let state = Cell::new(Progress::of_rows(self.rows()));
         let finished = Cell::new(0);
         let (mut last, mut pause, mut noted) = (Instant::now(), BETWEEN_MANIFESTS, 0);
         let work = |memory: &mut Vec<Values>, part: usize| {

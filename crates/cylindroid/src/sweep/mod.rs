@@ -5,8 +5,8 @@
 //! columns), `evaluate` (the numbers, by the batches that the other modules have), `table` and
 //! `parquet_file` (a part), `job` (a whole sweep), `designs` (of each design), `recipe` and `folder`
 //! (on disk, stopped and resumed), `shared_folder` (written by several processes). `capability` has
-//! points of a grid in place of configurations. Two go their own way: `optimise` (the best designs)
-//! and `map` (the workspace in the coordinates of the platform).
+//! points of a grid in place of configurations. Two go their own way, on the threads of `workers`:
+//! `optimise` (the best designs) and `map` (the workspace in the coordinates of the platform).
 //!
 //! ```
 //! use cylindroid::sweep::{Quantity, Source, Sweep, SweepOptions};
@@ -53,6 +53,7 @@ mod sobol;
 mod source;
 mod statistics;
 mod table;
+mod workers;
 
 pub use axis::Axis;
 pub use capability::VoxelGrid;

@@ -165,20 +165,16 @@ impl Sweep {
         mut observe: impl FnMut(&Progress) -> bool,
     ) -> Result<Option<Vec<(Column, Statistics)>>> {
         let mut parts: Vec<Option<Vec<Sum>>> = vec![None; self.parts()];
-        let progress = std::cell::Cell::new(Progress { rows: self.rows(), done: 0, computed: 0 });
+        let progress = std::cell::Cell::new(Progress::of_rows(self.rows()));
         let work = |values: &mut Vec<Values>, part: usize| {
             self.fill(self.rows_of(part), values)?;
             Ok(self.sums(values, 0..usize::MAX))
         };
         let finished = |part: usize, sums| {
             let rows = self.rows_of(part);
-            let Progress { done, computed, .. } = progress.get();
-            let more = rows.end - rows.start;
-            progress.set(Progress {
-                rows: self.rows(),
-                done: done + more,
-                computed: computed + more,
-            });
+            let (before, more) = (progress.get(), rows.end - rows.start);
+            let (done, computed) = (before.done + more, before.computed + more);
+            progress.set(Progress { done, computed, ..before });
             parts[part] = Some(sums);
         };
         run_parts(self.parts(), threads, work, finished, || Ok(observe(&progress.get())))?;

@@ -16,4 +16,5 @@ mod robots;
 #[allow(dead_code)] // of the helpers, a few are needed here
 #[path = "../it/support.rs"]
 mod support;
+mod threads;
 mod zone;

@@ -38,14 +38,25 @@ fn a_five_bar_does_not_reach_its_second_pivot() {
     assert!((hole.center[0] - 2.0).hypot(hole.center[1]) < 0.02, "{:?}", hole.center);
 
     // All modes together reach what each of them reaches.
-    for mode in &map.modes {
-        let own = map.workspace_of(mode);
+    for (number, mode) in map.modes.iter().enumerate() {
+        let own = map.workspace_of(number).unwrap();
         assert!(own.cells == mode.cells() && own.cells <= workspace.cells);
     }
     // A grid that ends within it.
     let cut = crate::five_bar::map(&five_bar(), vec![axis("x", 1.013, 3.507, 21), axes[1].clone()]);
     assert!(cut.workspace().is_cut);
     assert_eq!(cut.workspace().holes.len(), 1);
+}
+
+/// The number of a mode of a larger map is none of this one, and the error says so.
+#[test]
+fn modes_of_other_maps_are_refused() {
+    let line = |from, to| vec![axis("x", from, to, 3), axis("y", 1.5, 1.5, 1)];
+    let (four, none) = (map(&five_bar(), line(0.5, 1.5)), map(&five_bar(), line(20.0, 21.0)));
+    assert!(four.modes.len() == 4 && none.modes.is_empty());
+    let message = none.workspace_of(3).unwrap_err().to_string();
+    assert!(message.contains("mode = 3") && message.contains("the map has 0 modes"), "{message}");
+    assert_eq!(four.workspace_of(3).unwrap().cells, four.modes[3].cells());
 }
 
 #[test]

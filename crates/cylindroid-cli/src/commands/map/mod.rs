@@ -9,6 +9,8 @@ use cylindroid::sweep::{LocusKind, Map, MapOptions};
 
 use self::report::{MapJson, RegionJson, report};
 use crate::args::MapArgs;
+use crate::commands::interrupt::Interrupt;
+use crate::commands::progress::{Bar, interrupted};
 use crate::commands::shared::{Style, load, reference_or_tool};
 use crate::exit::Exit;
 use crate::output::{self, Align, number};
@@ -26,23 +28,28 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
     let frame = reference_or_tool(&robot, &args.frame)?;
     let at = args.at.iter().map(|at| (at.pair().0.to_owned(), Some(at.pair().1)));
     let free = args.free.iter().map(|name| (name.clone(), None));
-    let map = Map::of(
-        &robot,
-        MapOptions {
-            axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
-            held: at.chain(free).collect(),
-            end_effector: Some(frame),
-            start: Some(args.q.configuration(&robot, args.model.srdf.as_deref(), false)?),
-            starts: args.starts,
-            seed: args.seed,
-            loci: !args.no_loci,
-        },
-    )?;
+    let options = MapOptions {
+        axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
+        held: at.chain(free).collect(),
+        end_effector: Some(frame),
+        start: Some(args.q.configuration(&robot, args.model.srdf.as_deref(), false)?),
+        starts: args.starts,
+        seed: args.seed,
+        loci: !args.no_loci,
+    };
+    let interrupt = Interrupt::new();
+    let bar = Bar::new();
+    let found = Map::run(&robot, options, args.threads, |progress| {
+        bar.show(progress);
+        !interrupt.came()
+    });
+    drop(bar);
+    let Some(map) = found? else { return interrupted() };
     let report = report(
         &robot,
         &map,
         (&robot.frame_of(frame.frame).name, frame.frame_from_tool.translation.to_array()),
-    );
+    )?;
     if let Some(path) = &args.out {
         file::write(&robot, &map, &report, path)?;
     }

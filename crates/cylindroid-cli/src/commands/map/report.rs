@@ -1,7 +1,7 @@
 //! The report of a map, as data.
 
-use cylindroid::Mechanism;
 use cylindroid::sweep::{Hole, Locus, Map, Region};
+use cylindroid::{Mechanism, Result};
 use serde::Serialize;
 
 use crate::output;
@@ -97,21 +97,21 @@ pub(super) fn report<'a>(
     robot: &'a Mechanism,
     map: &'a Map,
     (frame, tool): (&'a str, [f64; 3]),
-) -> MapJson<'a> {
+) -> Result<MapJson<'a>> {
     let n = robot.n();
     let least = |values: &[f64]| {
         values.iter().filter(|x| x.is_finite()).fold(f64::INFINITY, |a, x| a.min(x.abs()))
     };
-    let modes = map.modes.iter().map(|mode| {
+    let modes = map.modes.iter().enumerate().map(|(number, mode)| -> Result<ModeJson> {
         let best = (0..map.cells())
             .filter(|&cell| mode.reached[cell])
             .max_by(|a, b| mode.type_two[*a].abs().total_cmp(&mode.type_two[*b].abs()));
-        ModeJson {
-            region: map.workspace_of(mode).into(),
+        Ok(ModeJson {
+            region: map.workspace_of(number)?.into(),
             least_type_one: least(&mode.type_one),
             least_type_two: least(&mode.type_two),
             q: best.map_or_else(Vec::new, |cell| mode.q[cell * n..(cell + 1) * n].to_vec()),
-        }
+        })
     });
     let locus = |locus: &'a Locus| LocusJson {
         kind: locus.kind.name(),
@@ -121,7 +121,7 @@ pub(super) fn report<'a>(
         points: &locus.points,
         q: &locus.q,
     };
-    MapJson {
+    Ok(MapJson {
         model: robot.name(),
         frame,
         tool,
@@ -142,8 +142,8 @@ pub(super) fn report<'a>(
         cells: map.cells(),
         size_unit: map.size_unit(),
         workspace: map.workspace().into(),
-        modes: modes.collect(),
+        modes: modes.collect::<Result<_>>()?,
         joint_names: output::joint_names(robot),
         loci: map.loci.iter().map(locus).collect(),
-    }
+    })
 }

@@ -13,6 +13,7 @@ use self::report::Report;
 use crate::args::OptimiseArgs;
 use crate::commands::configurations::Chosen;
 use crate::commands::interrupt::Interrupt;
+use crate::commands::progress::interrupted;
 use crate::commands::shared::{Style, end_effector, load, parametric};
 use crate::exit::Exit;
 use crate::output;
@@ -60,10 +61,7 @@ pub(crate) fn run(args: &OptimiseArgs, style: Style, out: &mut dyn Write) -> any
         !interrupt.came()
     })?;
     bar.finish_and_clear();
-    let Some(found) = found else {
-        writeln!(std::io::stderr(), "interrupted")?;
-        return Ok(Exit::INTERRUPTED);
-    };
+    let Some(found) = found else { return interrupted() };
     let configurations = chosen.words(&source, search.configurations());
     let seconds = started.elapsed().as_secs_f64();
     let report = Report::of(&robot, (args, &search, &found), configurations, &workspace, seconds);

@@ -57,7 +57,7 @@ fn lines(
     writer.write_record(sweep.columns().iter().map(|c| &c.name)).map_err(failed)?;
     let mut start = 0;
     while start < all {
-        if !observe(&Progress { rows: all, done: start, computed: start }) {
+        if !observe(&Progress { unit: "rows", rows: all, done: start, computed: start }) {
             return Ok(false);
         }
         let end = all.min(start + BLOCK);

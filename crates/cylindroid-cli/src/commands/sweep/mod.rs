@@ -4,7 +4,6 @@ mod csv_file;
 mod drawing;
 mod report;
 
-use std::cell::Cell;
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
@@ -15,12 +14,12 @@ use cylindroid::sweep::{
     WriteOptions,
 };
 use cylindroid::{Error, Vec3};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use self::report::{Head, Outcome};
 use crate::args::SweepArgs;
 use crate::commands::configurations::Chosen;
 use crate::commands::interrupt::Interrupt;
+use crate::commands::progress::{Bar, interrupted};
 use crate::commands::shared::{Style, end_effector, load, parametric};
 use crate::exit::Exit;
 use crate::output;
@@ -71,7 +70,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     let head = Head::of(&robot, &sweep, &source, args);
     let interrupt = Interrupt::new();
     let started = Instant::now();
-    let bar = Bar::new(sweep.rows());
+    let bar = Bar::new();
     let observe = |progress: &Progress| {
         bar.show(progress);
         !interrupt.came()
@@ -130,11 +129,6 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     Ok(if outcome.complete() { Exit::SUCCESS } else { Exit::INTERRUPTED })
 }
 
-fn interrupted() -> anyhow::Result<Exit> {
-    writeln!(std::io::stderr(), "interrupted")?;
-    Ok(Exit::INTERRUPTED)
-}
-
 fn is_csv(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
@@ -169,38 +163,5 @@ fn designs(parameters: Vec<Axis>, args: &SweepArgs) -> cylindroid::Result<Option
             reason: "designs are a grid or samples: give parameters in --over or in --vary"
                 .to_owned(),
         }),
-    }
-}
-
-/// Progress on stderr, if stderr is a terminal: rate and time left.
-struct Bar {
-    bar: ProgressBar,
-    computed: Cell<u64>,
-}
-
-impl Bar {
-    fn new(rows: u64) -> Self {
-        let bar = ProgressBar::with_draw_target(Some(rows), ProgressDrawTarget::stderr());
-        let template = "{wide_bar} {human_pos} of {human_len} rows, {per_sec}, {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        Self { bar, computed: Cell::new(0) }
-    }
-
-    fn show(&self, progress: &Progress) {
-        // Rows of earlier runs do not count for the rate.
-        let before = progress.done - progress.computed;
-        if self.computed.replace(progress.computed) == 0 && progress.computed == 0 {
-            self.bar.set_position(before);
-            self.bar.reset_eta();
-        }
-        self.bar.set_position(progress.done);
-    }
-}
-
-impl Drop for Bar {
-    fn drop(&mut self) {
-        self.bar.finish_and_clear();
     }
 }

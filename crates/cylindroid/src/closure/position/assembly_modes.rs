@@ -123,28 +123,40 @@ pub fn assembly_modes(
     prescribed: &[usize],
     options: ModeOptions,
 ) -> Result<AssemblyModes> {
+    assembly_modes_while(mechanism, guess, prescribed, options, || true)
+}
+
+/// The same as long as `go_on` is true, which is asked before each start: from those made until then.
+pub(crate) fn assembly_modes_while(
+    mechanism: &Mechanism,
+    guess: &[f64],
+    prescribed: &[usize],
+    options: ModeOptions,
+    go_on: impl Fn() -> bool,
+) -> Result<AssemblyModes> {
     check_starts(options)?;
     let first = assemble(mechanism, guess, prescribed)?;
     let free = free_places(mechanism, prescribed)?;
     let landmarks = Landmarks::of(mechanism);
     let mut search = Search { mechanism, prescribed, free: &free, landmarks, modes: Vec::new() };
     let guessed = search.places(guess)?;
-    let mut closed = 0;
-    for start in 0..options.starts {
-        let found = if start == 0 {
+    let (mut closed, mut starts) = (0, 0);
+    while starts < options.starts && go_on() {
+        let found = if starts == 0 {
             first.clone()
         } else {
-            let restart = [options.seed, start as u64];
+            let restart = [options.seed, starts as u64];
             assemble(mechanism, &random(mechanism, guess, &free, restart), prescribed)?
         };
         if found.closed {
             closed += 1;
             search.add(wrapped_near(mechanism, guess, &free, found), &guessed)?;
         }
+        starts += 1;
     }
     let mut modes: Vec<Mode> = search.modes.into_iter().map(|seen| seen.mode).collect();
     modes.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    Ok(AssemblyModes { modes, first, starts: options.starts, closed })
+    Ok(AssemblyModes { modes, first, starts, closed })
 }
 
 pub(crate) fn check_starts(options: ModeOptions) -> Result<()> {

@@ -131,10 +131,6 @@ impl CurveTracer {
         Self { equations, vanishing, domain, unknown, rank, marks }
     }
 
-    pub(crate) fn set_side(&mut self, side: Option<(SignedSingularity, f64)>) {
-        self.domain.side = side;
-    }
-
     pub(crate) fn set_vanishing(&mut self, vanishing: Vanishing) {
         self.vanishing = vanishing;
     }
@@ -226,11 +222,12 @@ impl CurveTracer {
         Ok(self.unknown.iter().map(|&i| motion[i]).collect())
     }
 
-    /// The whole curve through a point on it, within the domain.
-    pub(crate) fn trace(&mut self, seed: &Seed) -> Result<Curve> {
-        let mut curve = self.half(seed, 1.0)?;
+    /// The whole curve through a point on it, within the domain; what there is of it where `go_on`
+    /// ends it, which is asked before each step.
+    pub(crate) fn trace(&mut self, seed: &Seed, go_on: &dyn Fn() -> bool) -> Result<Curve> {
+        let mut curve = self.half(seed, 1.0, go_on)?;
         if !curve.closed {
-            let mut back = self.half(seed, -1.0)?;
+            let mut back = self.half(seed, -1.0, go_on)?;
             back.points.reverse();
             back.landmarks.reverse();
             back.points.pop();
@@ -242,7 +239,7 @@ impl CurveTracer {
         Ok(curve)
     }
 
-    fn half(&mut self, seed: &Seed, sign: f64) -> Result<Curve> {
+    fn half(&mut self, seed: &Seed, sign: f64, go_on: &dyn Fn() -> bool) -> Result<Curve> {
         let mut curve = Curve { self_motion: seed.self_motion, ..Curve::default() };
         let Some(mut here) = self.corrected(seed.q.clone(), seed.self_motion)? else {
             return Ok(curve);
@@ -250,7 +247,7 @@ impl CurveTracer {
         let Some(mut tangent) = self.first_tangent(&here, sign) else { return Ok(curve) };
         self.push(&mut curve, here.q.clone())?;
         let mut step = 0.1 * self.longest(&tangent);
-        while curve.points.len() < MAX_POINTS {
+        while curve.points.len() < MAX_POINTS && go_on() {
             step = step.min(self.longest(&tangent));
             let next = loop {
                 if step < STEPS.0 {

@@ -19,7 +19,8 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 //!
-//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/options.rs
+//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/options.rs,
+//!          tests/map/threads.rs
 
 mod flood;
 mod grid;
@@ -38,12 +39,19 @@ pub use region::{Hole, Region};
 pub use result::{Locus, LocusKind, WorkingMode};
 pub use zone::{Zone, ZoneBound, ZoneComponent, ZoneOptions, ZoneShape};
 
+use std::num::NonZeroUsize;
+use std::time::{Duration, Instant};
+
 use self::grid::Grid;
 use self::problem::Problem;
 use self::result::working_mode;
-use super::Axis;
-use crate::error::Result;
+use super::workers::Workers;
+use super::{Axis, Progress};
+use crate::error::{Error, Result};
 use crate::model::Mechanism;
+
+/// Between two calls of the observer at least.
+const BETWEEN: Duration = Duration::from_millis(100);
 
 /// The workspace of a mechanism over components of its platform's pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +73,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// The map of a mechanism.
+    /// The map of a mechanism, computed by as many threads as the machine has.
     ///
     /// # Errors
     /// An unknown or repeated component, axes without values or in descending order, more than 2^22
@@ -73,17 +81,72 @@ impl Map {
     #[doc(alias = "workspace")]
     #[doc(alias = "singularity locus")]
     pub fn of(mechanism: &Mechanism, options: MapOptions) -> Result<Self> {
+        let mut go_on = |_: &Progress| true;
+        Self::computed(mechanism, options, &mut Workers::new(None, &mut go_on))
+    }
+
+    /// The same, watched. `threads` and `observe` as in [`Sweep::write`](super::Sweep::write): it is
+    /// called ten times a second until it returns false, which stops the computation; `None` then. The
+    /// map is the same to the bit whatever the number of threads.
+    ///
+    /// ```
+    /// use cylindroid::sweep::{Axis, Map, MapOptions};
+    ///
+    /// let five_bar = cylindroid::load("five-bar")?;
+    /// let axes = vec![Axis { name: "x".to_owned(), from: -1.0, to: 3.0, count: 9 }];
+    /// let options = MapOptions { axes, ..MapOptions::default() };
+    /// let found = Map::run(&five_bar, options, None, |progress| {
+    ///     println!("{} of {} {}", progress.done, progress.rows, progress.unit);
+    ///     true // go on
+    /// })?;
+    /// assert!(found.is_some());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Map::of`].
+    pub fn run(
+        mechanism: &Mechanism,
+        options: MapOptions,
+        threads: Option<NonZeroUsize>,
+        mut observe: impl FnMut(&Progress) -> bool,
+    ) -> Result<Option<Self>> {
+        let mut last: Option<(&'static str, Instant)> = None;
+        let mut seldom = |progress: &Progress| {
+            let recent =
+                |(unit, at): (&str, Instant)| unit == progress.unit && at.elapsed() < BETWEEN;
+            if last.is_some_and(recent) {
+                return true;
+            }
+            last = Some((progress.unit, Instant::now()));
+            observe(progress)
+        };
+        let mut workers = Workers::new(threads, &mut seldom);
+        let map = Self::computed(mechanism, options, &mut workers)?;
+        Ok(workers.goes_on().then_some(map))
+    }
+
+    /// The map; a part of it if the observer stops the workers.
+    fn computed(
+        mechanism: &Mechanism,
+        options: MapOptions,
+        workers: &mut Workers<'_>,
+    ) -> Result<Self> {
         let cells = options.cells()?;
         let problem = Problem::new(mechanism, &options)?;
         let grid = Grid::new(&options.axes);
-        let modes = modes::modes(&problem, &grid, &options)?;
+        let modes = modes::modes(&problem, &grid, &options, workers)?;
         let free_motions = problem.free_motions();
         let curves = options.loci
+            && workers.goes_on()
             && free_motions == 0
             && options.axes.len() == 2
             && options.axes.iter().all(|axis| axis.count > 1);
-        let loci =
-            if curves { loci::loci(&problem, &grid, &options.axes, &modes)? } else { Vec::new() };
+        let loci = if curves {
+            loci::loci(&problem, &grid, &options.axes, &modes, workers)?
+        } else {
+            Vec::new()
+        };
         let name = |i: usize| {
             let named = problem.components.iter().find(|(_, place)| *place == i);
             named.map_or_else(String::new, |(name, _)| (*name).to_owned())
@@ -111,10 +174,17 @@ impl Map {
         region::region(&Grid::new(&self.axes), &self.modes.iter().collect::<Vec<_>>())
     }
 
-    /// What one of its modes reaches.
-    #[must_use]
-    pub fn workspace_of(&self, mode: &WorkingMode) -> Region {
-        region::region(&Grid::new(&self.axes), &[mode])
+    /// What one of its modes reaches, by its place in `modes`.
+    ///
+    /// # Errors
+    /// A mode that there is not.
+    pub fn workspace_of(&self, mode: usize) -> Result<Region> {
+        let own = self.modes.get(mode).ok_or_else(|| Error::InvalidOption {
+            option: "mode",
+            value: mode.to_string(),
+            reason: format!("the map has {} modes, from 0 on", self.modes.len()),
+        })?;
+        Ok(region::region(&Grid::new(&self.axes), &[own]))
     }
 
     /// The unit of the size of a region, such as "m^2" or "m rad": of the axes with several values.

@@ -12,9 +12,9 @@
 
 use std::cell::RefCell;
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use super::super::parts::run_parts;
+use super::super::Progress;
+use super::super::workers::Workers;
 use super::indices::{Indices, Refusal};
 use super::options::{DesignObjective, OptimisationOptions, Sense};
 use super::pareto::{Extent, distinct, front, layers, spread};
@@ -77,39 +77,6 @@ impl Tally {
         self.invalid += other.invalid;
         self.without_index += other.without_index;
         self.reason = self.reason.take().or(other.reason);
-    }
-}
-
-/// The threads, and what they count.
-struct Workers<'a> {
-    threads: Option<NonZeroUsize>,
-    evaluated: AtomicU64,
-    stopped: AtomicBool,
-    observe: &'a mut dyn FnMut(u64) -> bool,
-}
-
-impl Workers<'_> {
-    /// All results in their order; `None` if the observer stopped them.
-    fn run<T: Send>(
-        &mut self,
-        count: usize,
-        work: impl Fn(usize, &AtomicU64, &AtomicBool) -> T + Sync,
-    ) -> Result<Option<Vec<T>>> {
-        let mut all: Vec<Option<T>> = (0..count).map(|_| None).collect();
-        let (evaluated, stopped, observe) = (&self.evaluated, &self.stopped, &mut *self.observe);
-        run_parts(
-            count,
-            self.threads,
-            |(): &mut (), part| Ok(work(part, evaluated, stopped)),
-            |part, result| all[part] = Some(result),
-            || {
-                let go_on = observe(evaluated.load(Ordering::Relaxed));
-                stopped.store(!go_on, Ordering::Relaxed);
-                Ok(go_on)
-            },
-        )?;
-        let stopped = stopped.load(Ordering::Relaxed);
-        Ok(all.into_iter().collect::<Option<Vec<T>>>().filter(|_| !stopped))
     }
 }
 
@@ -183,18 +150,14 @@ impl Optimisation {
         threads: Option<NonZeroUsize>,
         mut observe: impl FnMut(u64) -> bool,
     ) -> Result<Option<Optimum>> {
-        let mut workers = Workers {
-            threads,
-            evaluated: AtomicU64::new(0),
-            stopped: AtomicBool::new(false),
-            observe: &mut observe,
-        };
+        let mut evaluated = |progress: &Progress| observe(progress.done);
+        let mut workers = Workers::new(threads, &mut evaluated);
         let count = usize::try_from(self.indices.samples()).unwrap_or(usize::MAX);
-        let sampled = workers.run(count, |design, evaluated, _| {
+        let sampled = workers.run(count, |(): &mut (), design, watch| {
             let x = self.indices.sample(design as u64);
             let found = self.indices.costs(&self.indices.values(&x));
-            evaluated.fetch_add(1, Ordering::Relaxed);
-            (x, found)
+            watch.count(1);
+            Ok((x, found))
         })?;
         let Some(sampled) = sampled else { return Ok(None) };
         let mut tally = Tally::default();
@@ -248,7 +211,7 @@ impl Optimisation {
         extent: &Extent,
         tally: &mut Tally,
     ) -> Result<Option<Vec<(Found, Refinement)>>> {
-        let ends = workers.run(starts.len(), |part, evaluated, stopped| {
+        let ends = workers.run(starts.len(), |(): &mut (), part, watch| {
             let Start { from, objective } = &starts[part];
             let cost = |costs: &[f64]| match objective {
                 Some(i) if costs.len() == 1 => costs[*i],
@@ -257,15 +220,15 @@ impl Optimisation {
             };
             let own = RefCell::new(Tally::default());
             let of = |x: &[f64]| {
-                if stopped.load(Ordering::Relaxed) {
+                if !watch.goes_on() {
                     return f64::INFINITY;
                 }
                 let found = self.indices.costs(&self.indices.values(x));
-                evaluated.fetch_add(1, Ordering::Relaxed);
+                watch.count(1);
                 own.borrow_mut().add(found.as_ref().err().cloned());
                 found.map_or(f64::INFINITY, |costs| cost(&costs))
             };
-            let stop = || stopped.load(Ordering::Relaxed);
+            let stop = || !watch.goes_on();
             let begin = (&from.x[..], cost(&from.costs));
             let end = minimise(&of, begin, self.options.evaluations, &stop);
             let values = self.indices.values(&end.x);
@@ -277,7 +240,7 @@ impl Optimisation {
                 evaluated: end.evaluations,
                 converged: end.converged,
             };
-            (Found { x: end.x, costs }, refinement, own.into_inner())
+            Ok((Found { x: end.x, costs }, refinement, own.into_inner()))
         })?;
         let Some(ends) = ends else { return Ok(None) };
         let mut all = Vec::with_capacity(ends.len());

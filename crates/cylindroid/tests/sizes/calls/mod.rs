@@ -47,7 +47,7 @@ mod prelude {
     pub(super) use cylindroid::model::formats::srdf::Srdf;
     pub(super) use cylindroid::model::{Builder, Inclusion, JointLimits, LoadReport, Visual};
     pub(super) use cylindroid::sweep::{
-        Optimisation, Part, SharedFolder, Sweep, Values, WriteOptions,
+        Map, MapOptions, Optimisation, Part, SharedFolder, Sweep, Values, WriteOptions,
     };
     pub(super) use cylindroid::*;
 

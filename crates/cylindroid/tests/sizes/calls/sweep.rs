@@ -11,6 +11,7 @@ calls! {
     sweep::LocusKind::name;
     sweep::Map::cells;
     sweep::Map::of;
+    sweep::Map::run = |m: &'static Mechanism, options: MapOptions, threads: Option<NonZeroUsize>, go_on: bool| Map::run(m, options, threads, |_| go_on);
     sweep::Map::size_unit;
     sweep::Map::unit;
     sweep::Map::values;

@@ -1,0 +1,55 @@
+//! Progress on stderr, if stderr is a terminal: rate and time left; and the end of a run that Ctrl-C
+//! stopped.
+
+use std::cell::Cell;
+use std::io::Write;
+
+use cylindroid::sweep::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::exit::Exit;
+
+/// A line with what is counted, which disappears at the end.
+pub(crate) struct Bar {
+    bar: ProgressBar,
+    unit: Cell<&'static str>,
+    computed: Cell<u64>,
+}
+
+impl Bar {
+    pub(crate) fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
+        Self { bar, unit: Cell::new(""), computed: Cell::new(0) }
+    }
+
+    pub(crate) fn show(&self, progress: &Progress) {
+        let last = self.unit.replace(progress.unit);
+        let begins = last != progress.unit;
+        if begins {
+            let counts = format!("{{human_pos}} of {{human_len}} {}", progress.unit);
+            let template = format!("{{wide_bar}} {counts}, {{per_sec}}, {{eta}} left");
+            if let Ok(style) = ProgressStyle::with_template(&template) {
+                self.bar.set_style(style);
+            }
+        }
+        self.bar.set_length(progress.rows);
+        self.bar.set_position(progress.done);
+        // Neither rows of earlier runs nor what was counted before belong to the rate.
+        let is_idle = self.computed.replace(progress.computed) == 0 && progress.computed == 0;
+        if is_idle || (begins && !last.is_empty()) {
+            self.bar.reset_eta();
+        }
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// What a command ends with that Ctrl-C stopped before it had anything to show.
+pub(crate) fn interrupted() -> anyhow::Result<Exit> {
+    writeln!(std::io::stderr(), "interrupted")?;
+    Ok(Exit::INTERRUPTED)
+}
