@@ -16,7 +16,8 @@ export class Connection {
   private timer = 0;
   private link: Link = "connecting";
 
-  constructor(private readonly url: string, private readonly handlers: Handlers) {
+  /** `url` is asked for anew for each attempt. */
+  constructor(private readonly url: () => string, private readonly handlers: Handlers) {
     this.open();
     addEventListener("online", () => this.retry());
   }
@@ -39,17 +40,24 @@ export class Connection {
   /** Tries now instead of after the pause. */
   retry(): void {
     if (this.link !== "lost") return;
-    clearTimeout(this.timer);
+    this.renew();
+  }
+
+  /** Opens another line in place of this one. */
+  renew(): void {
+    this.close();
     this.open();
   }
 
+  /** The server answers as it should: the next pause is the first again. */
+  settle(): void {
+    this.pause = FIRST_PAUSE;
+  }
+
   private open(): void {
-    const socket = new WebSocket(this.url);
+    const socket = new WebSocket(this.url());
     this.socket = socket;
-    socket.onopen = () => {
-      this.pause = FIRST_PAUSE;
-      this.tell("open", 0);
-    };
+    socket.onopen = () => this.tell("open", 0);
     socket.onmessage = (event) => {
       if (socket === this.socket && typeof event.data === "string") this.handlers.message(event.data);
     };
@@ -67,12 +75,14 @@ export class Connection {
   }
 }
 
-/** The address of the sessions of an opened model, or of that of the command. */
-export function socketTo(model: string | null): string {
+/** The address of a session of an opened model, or of that of the command. */
+export function socketTo(model: string | null, session: string, observes: boolean): string {
   const url = new URL("./ws", location.href);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   [url.search, url.hash] = ["", ""];
   if (model !== null) url.searchParams.set("model", model);
+  url.searchParams.set("session", session);
+  if (observes) url.searchParams.set("observe", "");
   return url.href;
 }
 

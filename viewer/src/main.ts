@@ -21,6 +21,7 @@ import { layout } from "./layout";
 import { LinkBanner } from "./link_banner";
 import { Overlays } from "./overlays/overlays";
 import { Obstacles } from "./obstacles";
+import { KeptModels } from "./models/kept_models";
 import { News } from "./models/model_news";
 import { OpenDialog } from "./models/open_dialog";
 import { capabilityPanel } from "./panels/capability";
@@ -54,7 +55,7 @@ const page = layout(root);
 
 function start(): void {
   const stage = new Stage(page.stage);
-  const session = new Session(socketUrl("./ws"), () => stage.invalidate());
+  const session = new Session(() => socketUrl("./ws"), () => stage.invalidate());
   const timeline = new Timeline(page.dock, session, {
     redraw: () => redraw(),
     moved: () => history.tell(),
@@ -65,6 +66,8 @@ function start(): void {
     size: () => size,
     look: () => ({ camera: stage.place(), orthographic: stage.isOrthographic, overlays: [...overlays.on] }),
     picture: () => stage.png(),
+    recordBeside: (recording) => companions.record(recording),
+    showBeside: (past) => companions.showPast(past),
   });
   let problemsTold = "";
   const robot = new Robot({
@@ -121,7 +124,11 @@ function start(): void {
   picking.onNothing(() => selection.select(null));
   const obstaclePanel = new ObstaclePanel(session, hold);
   let fitWanted = true;
-  const companions = new Companions({ changed: () => stage.invalidate(), say: page.toast, box: () => robot.box() });
+  const models = new KeptModels();
+  const companions = new Companions(session, models, {
+    changed: () => stage.invalidate(), say: page.toast, box: () => robot.box(),
+    acted: () => timeline.live(), recorded: () => timeline.growBeside(),
+  });
   const fit = (): void => stage.fit(companions.within(target.within(robot.box())));
   const tools = new Tools(page.tools, target, stage, fit, () => obstaclePanel.show(null));
   const joints = new Joints(session);
@@ -199,7 +206,12 @@ function start(): void {
     else return;
     event.preventDefault();
   });
-  const restore = new Restore(session, overlays, stage, page.toast, () => distances.ask(), () => shown() ?? {});
+  const restore = new Restore(session, overlays, stage, page.toast, (isNew) => {
+    distances.ask();
+    if (isNew) companions.restore();
+  }, () => shown() ?? {});
+  const model = new URLSearchParams(location.search).get("model");
+  if (model !== null) models.follow(session, model, { opens: () => restore.drove, failed: (words) => page.toast(words, true) });
 
   async function share(): Promise<void> {
     const shot = restore.now();
@@ -241,6 +253,7 @@ function start(): void {
     hold(wanted);
     compare.offer(scene);
     if (restore.scene(scene)) history.clear();
+    companions.build(scene);
     stage.invalidate();
   });
 
@@ -303,7 +316,8 @@ function start(): void {
   session.on("failure", ({ reply_to, message, culprit, place }) => {
     // Controls show what is in effect, not what was refused.
     if (session.scene) for (const controls of [joints, servo]) controls.build(session.scene);
-    if (![reports, compare, timeline].some((asker) => asker.owns(reply_to))) page.toast(message, true, `${place} ${culprit}`);
+    // That the model is gone is said where it is opened again.
+    if (place !== "model" && ![reports, compare, timeline].some((asker) => asker.owns(reply_to))) page.toast(message, true, `${place} ${culprit}`);
   });
   session.on("about", () => {
     const observes = !session.drives;
@@ -312,11 +326,8 @@ function start(): void {
     if (session.scene) modelPanel.build(session.scene, false);
     target.setEnabled(!observes);
   });
-  const banner = new LinkBanner(page.banner, () => session.retry());
-  session.on("link", ({ link, wait }) => {
-    bar.link(link);
-    banner.show(link, wait);
-  });
+  new LinkBanner(page.banner, session);
+  session.on("link", ({ link }) => bar.link(link));
   overlays.onChange(() => {
     timeline.refresh();
     redraw();
@@ -326,7 +337,7 @@ function start(): void {
   stage.onFrame(() => timeline.flush());
   stage.onFrame(() => labels.place(stage.eye));
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { viewer: { session, stage, timeline, target, robot, companions, mark, selection, distances, collisions, map, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
+  Object.assign(window, { viewer: { session, stage, timeline, target, robot, companions, models, mark, selection, distances, collisions, map, project: (at: number[]) => new Vector3(at[0], at[1], at[2]).project(stage.eye).toArray() } });
 }
 
 try {

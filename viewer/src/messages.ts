@@ -24,6 +24,7 @@ export type AnchorKind = "joint" | "child" | "loop" | "contact" | "frame";
 export type AvoidCollisionsMessage = { on: boolean, gap: number | null, margin: number | null };
 export type Avoidance = { gap: number, margin: number };
 export type AxisScrew = { name: string, screw: Screw, actuated: boolean, coordinate: number | null };
+export type BesideMessage = { models: Array<ModelBeside> };
 /** The inverse that the client chose, with the values of its parameters. */
 export type ChosenMethod = { name: string, parameters: { [key in string]: number }, h: number | null, fallback: string | null };
 export type ClosureError = { distance: number, angle: number, closed: boolean };
@@ -130,6 +131,17 @@ export type Method = { name: string, description: string, parameters: Array<Para
 export type MethodMessage = { name: string, parameters: { [key in string]: number }, h: number | null, fallback: string | null };
 /** The joint followed by a mimic joint, in JSON. */
 export type Mimic = { joint: string, multiplier: number, offset: number };
+/** A model that is shown beside that of a session. */
+export type ModelBeside = {
+  /** An opened model; null: that of the command. */
+  model: string | null,
+  /** The session of its joints. */
+  session: string,
+  position: [number, number, number],
+  /** w, x, y, z. */
+  quaternion: [number, number, number, number],
+  transparent: boolean,
+};
 /** The message `model`. */
 export type ModelNews = {
   "type": "model",
@@ -252,6 +264,7 @@ export type Scene = {
   home: Array<number>,
   obstacles: Array<Obstacle>,
   avoidance: Avoidance | null,
+  beside: Array<ModelBeside>,
   ignored: number,
 };
 export type SceneContact = { name: string, kind: string, a: number, b: number, friction: number | null };
@@ -387,6 +400,7 @@ export type ToServer = { id?: string | number } & (
   | { "type": "move_obstacle" } & MoveObstacleMessage
   | { "type": "remove_obstacle" } & NameMessage
   | { "type": "avoid_collisions" } & AvoidCollisionsMessage
+  | { "type": "beside" } & BesideMessage
   | { "type": "drive" } & DriveMessage
   | { "type": "seen" } & SeenMessage);
 /** World axes, at the tool. */

@@ -7,19 +7,21 @@ import { parse, snapshot, type Snapshot } from "./share";
 
 export class Restore {
   private wanted: Snapshot | null = null;
-  /** The session that was lost, and whether this page drove it; `begun` is null for a page alone. */
-  private last: { shot: Snapshot; begun: number | null; drove: boolean } | null = null;
+  /** The session that was lost; `begun` is null for a page alone. */
+  private last: { shot: Snapshot; begun: number | null } | null = null;
   /** Of the session: it is gone when the connection is. */
   private about: About | null = null;
   private fresh = true;
+  /** Whether this page drove when the connection was lost; true before. */
+  drove = true;
 
   constructor(
     private readonly session: Session,
     private readonly overlays: Overlays,
     private readonly stage: Stage,
     private readonly say: (words: string, bad?: boolean) => void,
-    /** Called for every new session. */
-    private readonly begin: () => void,
+    /** Called for every connection; `isNew`: its session is new, and this page drives it. */
+    private readonly begin: (isNew: boolean) => void,
     /** What is shown: the session, or a moment of a recording. */
     private readonly shown: () => Partial<{ scene: Scene | null; state: State | null }>,
   ) {
@@ -35,9 +37,10 @@ export class Restore {
       this.fresh = true;
       const { scene, state } = session;
       const { about } = this;
+      this.drove = about === null || about.driver === "you";
       // The robot as it was, whatever is shown.
       const shot = scene && state && this.shot(scene, state);
-      this.last = shot && { shot, begun: about?.begun ?? null, drove: about === null || about.driver === "you" };
+      this.last = shot && { shot, begun: about?.begun ?? null };
     });
   }
 
@@ -67,10 +70,10 @@ export class Restore {
     }
     this.last = null;
     session.send({ type: "overlays", names: this.overlays.names() });
-    this.begin();
+    this.begin(isNew);
     this.apply(scene);
     // Whoever drove before drives again.
-    if (isRestored && !last.drove) session.send({ type: "drive", on: false });
+    if (isRestored && !this.drove) session.send({ type: "drive", on: false });
     return true;
   }
 

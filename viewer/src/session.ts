@@ -33,6 +33,8 @@ export class Session {
   /** Null for a session of this page alone. */
   about: About | null = null;
   link: Link = "connecting";
+  /** The server is there, but does not have the model of this session. */
+  isModelGone = false;
   /** Wants every state, drawn or not: the server then holds none back for a slow page. */
   eager = false;
   private readonly listeners: { [K in keyof Events]?: ((event: Events[K]) => void)[] } = {};
@@ -45,7 +47,7 @@ export class Session {
   private readonly outbox: Outbox;
 
   /** `wake` asks for a frame; `takeNewest` is to be called in it. */
-  constructor(url: string, private readonly wake: () => void) {
+  constructor(url: () => string, private readonly wake: () => void) {
     this.outbox = new Outbox((message) => this.send(message));
     this.connection = new Connection(url, {
       message: (raw) => this.receive(raw),
@@ -90,6 +92,11 @@ export class Session {
     this.connection.retry();
   }
 
+  /** Connects anew, also where the line is not known to be lost. */
+  reconnect(): void {
+    this.connection.renew();
+  }
+
   /** Since the newest state came (s). */
   get age(): number {
     return (performance.now() - this.came) / 1000;
@@ -122,6 +129,8 @@ export class Session {
       const same = this.scene?.links.length === message.links.length && this.scene.name === message.name;
       this.scene = message;
       if (!same) this.state = null;
+      this.isModelGone = false;
+      this.connection.settle();
       this.emit("scene", message);
     } else if (message.type === "session") {
       this.about = message;
@@ -135,6 +144,7 @@ export class Session {
       this.receiveState(raw);
     } else if (message.type === "error") {
       this.outbox.answered(message.reply_to);
+      if (message.place === "model") this.isModelGone = true;
       this.emit("failure", message);
     } else if (message.type === "compare" || message.type === "report" || message.type === "states") {
       this.emit(message.type as "compare", message as Comparison);

@@ -1,46 +1,20 @@
 /** Several models in one view: each with a session of its own, where one puts it, solid or transparent. */
 import assert from "node:assert/strict";
+import { mkdtemp, writeFile } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { test } from "node:test";
-import { apart, browserOfFile, enter, openPanel, picture, state } from "./lib.mjs";
+import { pathToFileURL } from "node:url";
+import { addBeside, apart, beside, browserOfFile, enter, openPanel, picture, saved, served, state, untilBeside, untilBesideAt } from "./lib.mjs";
 
-const { visit } = browserOfFile();
-
-/**
- * @param {import("playwright-core").Page} page
- * @returns {Promise<{ name: string, q: number[], place: number[], size: number[] }[]>}
- */
-const beside = (page) => page.evaluate(() => [.../** @type {any} */ (window).viewer.companions.all.values()].map(({ session, group, robot }) => {
-  const box = robot.box();
-  return { name: session.scene?.name, q: session.state?.q, place: group.position.toArray(), size: [box.min.x, box.max.x] };
-}));
-
-/**
- * Waits until these models stand beside the first.
- * @param {import("playwright-core").Page} page
- * @param {string[]} names
- */
-async function until(page, names) {
-  await page.waitForFunction((wanted) => {
-    const all = [.../** @type {any} */ (window).viewer.companions.all.values()];
-    return JSON.stringify(all.map(({ session, isPlaced }) => isPlaced && session.scene.name)) === wanted;
-  }, JSON.stringify(names));
-}
-
-/**
- * @param {import("playwright-core").Page} page
- * @param {string} name
- */
-async function add(page, name) {
-  await page.getByRole("button", { name: "Open a file" }).click();
-  await page.getByRole("button", { name: `${name} beside the model that is shown` }).first().click();
-  await page.locator("dialog").waitFor({ state: "hidden" });
-}
+const { look, visit } = browserOfFile();
+const folder = await mkdtemp(join(tmpdir(), "cylindroid-beside-"));
 
 for (const [width, height, dark] of /** @type {const} */ ([[1366, 768, false], [390, 844, true]])) {
   test(`models of the catalogue stand beside the first and have joints of their own, ${width} x ${height}`, () =>
     visit(["3r"], async (page, server) => {
-      await add(page, "ur5e");
-      await until(page, ["ur5e"]);
+      await addBeside(page, "ur5e");
+      await untilBeside(page, ["ur5e"]);
       const first = await state(page);
       const [other] = await beside(page);
       const own = await page.evaluate(() => /** @type {any} */ (window).viewer.robot.box().max.x);
@@ -52,8 +26,8 @@ for (const [width, height, dark] of /** @type {const} */ ([[1366, 768, false], [
       await page.waitForFunction(() => [.../** @type {any} */ (window).viewer.companions.all.values()][0].session.state.q[0] === 0.75);
       assert.deepEqual((await state(page)).q, first.q, "the first is not moved");
       // A second one, put where one likes.
-      await add(page, "3r");
-      await until(page, ["ur5e", "3r"]);
+      await addBeside(page, "3r");
+      await untilBeside(page, ["ur5e", "3r"]);
       const fields = panel.getByRole("group", { name: "Model beside, 2" });
       for (const [part, value] of /** @type {const} */ ([["x", 0], ["y", -0.5], ["z", 0.25]])) await enter(fields.locator(`[data-beside="${part}"]`), value);
       assert.ok(apart((await beside(page))[1]?.place ?? [], [0, -0.5, 0.25]) < 1e-9);
@@ -68,11 +42,11 @@ for (const [width, height, dark] of /** @type {const} */ ([[1366, 768, false], [
       });
       assert.deepEqual(opacities, [true]);
       // The address brings them back.
-      assert.match(page.url(), /\?beside=1&beside=command$/);
+      assert.match(page.url(), /\?beside=[0-9a-f]{16}&beside=command$/);
       await page.reload();
-      await until(page, ["ur5e", "3r"]);
+      await untilBeside(page, ["ur5e", "3r"]);
       await panel.getByRole("button", { name: "Remove the model beside, 1" }).click();
-      await until(page, ["3r"]);
+      await untilBeside(page, ["3r"]);
       assert.equal(new URL(page.url()).search, "?beside=command");
       await panel.getByRole("button", { name: "Remove the model beside, 2" }).press("Enter");
       await panel.waitFor({ state: "hidden" });
@@ -85,7 +59,7 @@ test("the model of the command stands beside itself, and one that is gone is tol
     await page.getByRole("button", { name: "Open a file" }).focus();
     await page.keyboard.press("Enter");
     await page.getByRole("button", { name: "five-bar beside the model that is shown" }).first().press("Enter");
-    await until(page, ["five-bar"]);
+    await untilBeside(page, ["five-bar"]);
     await openPanel(page, "beside-1");
     const panel = page.locator('[data-panel="beside"]');
     // A closed chain has its switches of actuated joints.
@@ -95,4 +69,94 @@ test("the model of the command stands beside itself, and one that is gone is tol
     await page.getByText(/model 77 is not open on this server/).first().waitFor();
     await page.waitForFunction(() => /** @type {any} */ (window).viewer.companions.all.size === 0);
     assert.equal(page.url(), server.url);
+  }));
+
+test("an observer sees the models beside the first, and moves them once it drives", () =>
+  served(["3r"], ({ url }) =>
+    look(`${url}?session=demo`, async (driver) => {
+      await driver.locator(".role").getByText("Driving, 1 page").waitFor();
+      await addBeside(driver, "ur5e");
+      await untilBeside(driver, ["ur5e"]);
+      await look(`${url}?session=demo`, async (observer) => {
+        await untilBeside(observer, ["ur5e"]);
+        assert.deepEqual((await beside(observer))[0]?.place, (await beside(driver))[0]?.place);
+        await openPanel(driver, "beside-1");
+        const field = (/** @type {import("playwright-core").Page} */ page) => page.locator('[data-panel="beside-1"] .field').first();
+        await enter(field(driver), 0.75);
+        await untilBesideAt(observer, 0, 0.75);
+        assert.ok(await observer.locator('[data-panel="beside"] > .body').evaluate((body) => /** @type {HTMLElement} */ (body).inert));
+        await observer.evaluate(() => /** @type {any} */ (window).viewer.companions.add(null));
+        await observer.getByText("Only the page that drives").waitFor();
+        assert.equal((await beside(observer)).length, 1);
+        await picture(observer, "beside-observer");
+
+        await observer.locator('[data-role="drive"]').click();
+        await observer.locator(".role").getByText("Driving, 2 pages").waitFor();
+        await observer.waitForFunction(() => [.../** @type {any} */ (window).viewer.companions.all.values()][0].session.drives);
+        await openPanel(observer, "beside-1");
+        await enter(field(observer), -0.25);
+        await untilBesideAt(driver, 0, -0.25);
+        await enter(observer.locator('[data-beside="y"]'), 0.5);
+        await driver.waitForFunction(() => [.../** @type {any} */ (window).viewer.companions.all.values()][0].group.position.y === 0.5);
+        // Who comes back finds them.
+        await driver.reload();
+        await untilBeside(driver, ["ur5e"]);
+        await untilBesideAt(driver, 0, -0.25);
+        await observer.getByRole("button", { name: "Remove the model beside, 1" }).click();
+        await untilBeside(driver, []);
+        assert.equal(driver.url(), `${url}?session=demo`);
+      });
+    })));
+
+/**
+ * Whether the links of the model beside the first are drawn at these poses.
+ * @param {import("playwright-core").Page} page
+ * @param {string} path of its robot
+ * @param {{ quaternion: number[] }[]} links
+ */
+async function untilDrawnAt(page, path, links) {
+  await page.waitForFunction(([from, wanted]) => {
+    const { viewer, film } = /** @type {any} */ (window);
+    const robot = from === "film" ? film.beside.all.values().next().value.body.robot : [...viewer.companions.all.values()][0].robot;
+    const drawn = robot.links.flatMap((/** @type {any} */ { frame: { quaternion: { w, x, y, z } } }) => [w, x, y, z]);
+    return drawn.length === wanted.length && drawn.every((/** @type {number} */ value, /** @type {number} */ i) => Math.abs(value - (wanted[i] ?? NaN)) < 1e-9);
+  }, /** @type {[string, number[]]} */ ([path, links.flatMap(({ quaternion }) => quaternion)]));
+}
+
+test("models beside the first are recorded and played with it, here and on a page by itself", () =>
+  visit(["3r"], async (page) => {
+    await addBeside(page, "ur5e");
+    await untilBeside(page, ["ur5e"]);
+    await openPanel(page, "beside-1");
+    await page.getByRole("button", { name: "Record" }).click();
+    const field = page.locator('[data-panel="beside-1"] .field').first();
+    for (const value of [0.75, -0.5]) {
+      await enter(field, value);
+      await untilBesideAt(page, 0, value);
+      await page.waitForTimeout(500);
+    }
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    const { states, beside: [track] } = JSON.parse(await saved(page, "Save the recording as JSON"));
+    assert.equal(track.model, "ur5e");
+    assert.equal(track.times.length, track.states.length);
+    const values = track.states.map((/** @type {any} */ one) => one.q[0]);
+    const at = values.indexOf(0.75);
+    assert.ok(at > 0 && values.at(-1) === -0.5 && track.times[at] < track.times.at(-1) - 0.3, `${values} at ${track.times}`);
+    // The first has not moved: nothing of it was sent.
+    assert.equal(new Set(states.map((/** @type {any} */ one) => String(one.q))).size, 1);
+    await page.evaluate((time) => /** @type {any} */ (window).viewer.timeline.player.seek(time), track.times[at]);
+    await untilDrawnAt(page, "viewer", track.states[at].links);
+    assert.equal((await beside(page))[0]?.q[0], -0.5, "it has not moved");
+    await picture(page, "beside-recorded");
+    const path = join(folder, "beside.html");
+    await writeFile(path, await saved(page, "Save HTML that plays the recording by itself"));
+    await page.getByRole("button", { name: "live" }).click();
+    await untilDrawnAt(page, "viewer", track.states.at(-1).links);
+    const film = await page.context().newPage();
+    await film.goto(pathToFileURL(path).href);
+    await film.waitForFunction(() => /** @type {any} */ (window).film?.stage.frames > 1);
+    await untilDrawnAt(film, "film", track.states[0].links);
+    await film.evaluate((time) => /** @type {any} */ (window).film.player.seek(time), track.times[at]);
+    await untilDrawnAt(film, "film", track.states[at].links);
+    await picture(film, "beside-film");
   }));

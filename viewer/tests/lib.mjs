@@ -337,3 +337,63 @@ export async function openFiles(page, ...paths) {
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.getByRole("button", { name: "Choose files" }).click()]);
   await chooser.setFiles(paths);
 }
+
+/**
+ * Waits for the page of another model.
+ * @param {Page} page
+ * @param {string} name
+ */
+export async function untilModel(page, name) {
+  await page.waitForFunction((wanted) => /** @type {any} */ (window).viewer?.session.scene?.name === wanted, name);
+  await drawn(page);
+}
+
+/**
+ * Shows a model beside the first, by the dialogue.
+ * @param {Page} page
+ * @param {string} name
+ */
+export async function addBeside(page, name) {
+  await page.getByRole("button", { name: "Open a file" }).click();
+  await page.getByRole("button", { name: `${name} beside the model that is shown` }).first().click();
+  await page.locator("dialog").waitFor({ state: "hidden" });
+}
+
+/**
+ * The models beside the first: their joints, places, and sizes along x.
+ * @param {Page} page
+ * @returns {Promise<{ name: string, q: number[], place: number[], size: number[] }[]>}
+ */
+export function beside(page) {
+  return page.evaluate(() => [.../** @type {any} */ (window).viewer.companions.all.values()].map(({ session, group, robot }) => {
+    const box = robot.box();
+    return { name: session.scene?.name, q: session.state?.q, place: group.position.toArray(), size: [box.min.x, box.max.x] };
+  }));
+}
+
+/**
+ * Waits until these models stand beside the first, and its session has them.
+ * @param {Page} page
+ * @param {string[]} names
+ */
+export async function untilBeside(page, names) {
+  await page.waitForFunction((wanted) => {
+    const { session: first, companions } = /** @type {any} */ (window).viewer ?? {};
+    const all = [...(companions?.all.values() ?? [])];
+    const names = all.map(({ session, isPlaced }) => isPlaced && session.state !== null && session.scene.name);
+    return first?.scene?.beside.length === all.length && JSON.stringify(names) === wanted;
+  }, JSON.stringify(names));
+}
+
+/**
+ * Waits until the first joint of a model beside the first has a value, as it is in its session.
+ * @param {Page} page
+ * @param {number} which
+ * @param {number} value
+ */
+export async function untilBesideAt(page, which, value) {
+  await page.waitForFunction(([i, wanted]) => {
+    const all = [.../** @type {any} */ (window).viewer.companions.all.values()];
+    return all[i ?? 0]?.session.state?.q[0] === wanted;
+  }, [which, value]);
+}

@@ -3,7 +3,10 @@ import type { OverlayName, Scene } from "../protocol";
 
 /** From where one looks, and what is drawn beside the robot. */
 export type Look = { camera: number[]; orthographic: boolean; overlays: OverlayName[] };
-export type Head = Look & { times: number[]; scenes: { from: number; scene: Scene }[] };
+/** Times of the states of a model, and its scenes, each from its first state on. */
+export type Track = { times: number[]; scenes: { from: number; scene: Scene }[] };
+/** With the models beside the first, by their sessions; their states follow those of the first. */
+export type Head = Look & Track & { beside: (Track & { session: string })[] };
 
 /** Elements of the page that hold them. */
 export const RECORDING = "recording";

@@ -23,7 +23,8 @@ import { Trail } from "../timeline/trail";
 import { UnitControls } from "../controls/units";
 import { inUnits } from "../units";
 import { offer } from "./bodies";
-import { BODIES, RECORDING, unpacked, type Head } from "./film";
+import { Beside } from "./beside";
+import { BODIES, RECORDING, unpacked, type Head, type Track } from "./film";
 import "../styles/film.css";
 
 const VIEWS: View[] = ["corner", "front", "side", "top"];
@@ -41,17 +42,24 @@ function part(id: string): Response {
 async function start(): Promise<void> {
   const [first = "", ...states] = (await part(RECORDING).text()).split("\n");
   const head = JSON.parse(first) as Head;
-  const scenes = head.scenes.map(({ scene }) => scene);
+  const scenes = [head, ...head.beside].flatMap((track) => track.scenes.map(({ scene }) => scene));
   await offer(scenes, await part(BODIES).arrayBuffer());
-  const [scene] = scenes;
-  if (!scene) throw new Error("it has no scene");
-  const recording = new Recording(scene);
-  states.forEach((raw, i) => {
-    const next = head.scenes.find(({ from }) => from === i && i > 0);
-    if (next) recording.changeScene(next.scene);
-    recording.take(head.times[i] ?? 0, raw);
-  });
+  const recording = recordingOf(head, states);
+  for (const { session, ...track } of head.beside) recording.beside.set(session, recordingOf(track, states));
   show(recording, head);
+}
+
+/** Takes the states of a model, which are the first of these. */
+function recordingOf({ scenes, times }: Track, states: string[]): Recording {
+  const [first] = scenes;
+  if (!first) throw new Error("it has no scene");
+  const recording = new Recording(first.scene);
+  states.splice(0, times.length).forEach((raw, i) => {
+    const next = scenes.find(({ from }) => from === i && i > 0);
+    if (next) recording.changeScene(next.scene);
+    recording.take(times[i] ?? 0, raw);
+  });
+  return recording;
 }
 
 function show(recording: Recording, head: Head): void {
@@ -65,7 +73,8 @@ function show(recording: Recording, head: Head): void {
   const trail = new Trail();
   const [pose, singular] = [posePanel(), singularPanel(() => redraw())];
   page.right.append(pose.element, singular.element, new UnitControls().panel.element);
-  stage.scene.add(robot.group, overlays.group, obstacles.group, trail.group);
+  const beside = new Beside(recording, () => stage.invalidate());
+  stage.scene.add(robot.group, overlays.group, obstacles.group, trail.group, beside.group);
 
   const player = new Player(() => move(), () => dock.playing(player.playing));
   const plots = new Plots((time) => {
@@ -93,6 +102,7 @@ function show(recording: Recording, head: Head): void {
     }
     robot.place(state);
     obstacles.place(state, null);
+    beside.show({ recording, time: player.time, scene });
     if (fitWanted) fit(scene);
     overlays.draw(scene, state, { size, jointPlace: (coordinate) => robot.jointPlace(scene, coordinate) });
     for (const panel of [pose, singular]) panel.show(scene, state);
@@ -104,7 +114,7 @@ function show(recording: Recording, head: Head): void {
     const box = robot.box();
     size = Math.max(2.2 * box.getBoundingSphere(new Sphere()).radius, 0.1 * scene.reach);
     stage.scale(size, scene.dimension === 2 ? -0.03 * size : box.min.z);
-    stage.fit(box);
+    stage.fit(beside.within(box));
     stage.setOrthographic(head.orthographic);
     stage.place(head.camera);
     trail.draw(recording.columns, size);
@@ -119,11 +129,11 @@ function show(recording: Recording, head: Head): void {
   for (const { onToggle } of [pose, singular]) onToggle(redraw);
   stage.onFrame(() => labels.place(stage.eye));
 
-  const all = (): void => stage.fit(robot.box());
+  const all = (): void => stage.fit(beside.within(robot.box()));
   const project = (): void => stage.setOrthographic(!stage.isOrthographic);
   page.bar.append(
     h("h1", { class: "brand" }, "cylindroid"),
-    h("div", { class: "model" }, h("b", {}, recording.scene.name), ` ${count(recording.length, "state")}, ${fixed(recording.duration, 2)} s`),
+    h("div", { class: "model" }, h("b", {}, recording.scene.name), ` ${count(recording.length, "state")}, ${fixed(recording.end, 2)} s`),
     h("div", { class: "spread" }),
     h("button", { class: "button", type: "button", title: "Theme", "aria-label": "Theme", onclick: () => nextTheme() }, icon("system")),
   );
@@ -143,14 +153,14 @@ function show(recording: Recording, head: Head): void {
     if (player.playing) player.pause();
     else player.play();
   });
-  player.setEnd(recording.duration);
-  dock.show(recording.columns, recording.duration);
+  player.setEnd(recording.end);
+  dock.show(recording.columns, recording.end);
   dock.paint();
   dock.playing(false);
   plots.show(recording);
   player.seek(0);
   // For tests: what is drawn, without reading pixels.
-  Object.assign(window, { film: { recording, stage, robot, player, overlays, state: () => recording.stateAt(index) } });
+  Object.assign(window, { film: { recording, stage, robot, beside, player, overlays, state: () => recording.stateAt(index) } });
 }
 
 start().catch((error: unknown) => {

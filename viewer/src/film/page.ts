@@ -1,7 +1,7 @@
 /** A recording as one HTML file: script, styles, states and bodies are in it, and it fetches nothing. */
 import type { Recording } from "../timeline/recording";
 import { collected } from "./collect";
-import { BODIES, packed, RECORDING, type Head, type Look } from "./film";
+import { BODIES, packed, RECORDING, type Head, type Look, type Track } from "./film";
 
 /** Nothing from elsewhere. `blob:` is where a browser keeps the images of the bodies. */
 const POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; connect-src data: blob:";
@@ -9,14 +9,15 @@ const POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsaf
 export async function filmPage(recording: Recording, look: Look): Promise<Blob> {
   const { name } = recording.scene;
   const [script, styles] = await Promise.all(["film.js", "film.css"].map(part));
-  const parts = recording.parts();
-  const { scenes, bodies } = await collected(parts.map(({ scene }) => scene));
-  const head: Head = {
-    ...look,
-    times: [...recording.columns.time.view()],
-    scenes: scenes.map((scene, i) => ({ from: parts[i]?.from ?? 0, scene })),
-  };
-  const states = await packed(new Blob([JSON.stringify(head), "\n", recording.lines()]));
+  const beside = [...recording.beside];
+  const all = [recording, ...beside.map(([, one]) => one)];
+  const { scenes, bodies } = await collected(all.flatMap((one) => one.parts().map(({ scene }) => scene)));
+  const track = (one: Recording): Track => ({
+    times: [...one.columns.time.view()],
+    scenes: one.parts().map(({ from, scene }) => ({ from, scene: scenes.shift() ?? scene })),
+  });
+  const head: Head = { ...look, ...track(recording), beside: beside.map(([session, one]) => ({ session, ...track(one) })) };
+  const states = await packed(new Blob([JSON.stringify(head), ...all.flatMap((one) => ["\n", one.lines()])]));
   const data = (id: string, text: string): string => `<script type="text/plain" id="${id}">${text}</script>\n`;
   return new Blob([
     '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n',

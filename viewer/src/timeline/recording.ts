@@ -8,8 +8,13 @@ export const MOST = 72_000;
 /** Between two samples (s). */
 const LEAST = 1e-4;
 
+/** A time of a recording, and the scene that it has there. */
+export type Past = { recording: Recording; time: number; scene: Scene };
+
 export class Recording {
   readonly columns: Columns;
+  /** Of the models beside the first, by their sessions; their times are of the same clock. */
+  readonly beside = new Map<string, Recording>();
   /** As the server sent them: text needs a tenth of the memory of what it describes. */
   private readonly raws: string[] = [];
   /** Each from its first state on. */
@@ -36,16 +41,21 @@ export class Recording {
     return this.length > 0 ? this.columns.time.at(this.length - 1) : 0;
   }
 
+  /** Of the last state of all models (s). */
+  get end(): number {
+    return Math.max(this.duration, ...[...this.beside.values()].map(({ duration }) => duration));
+  }
+
   /** The states that follow are of this scene. */
   changeScene(scene: Scene): void {
     if (this.scenes.at(-1)?.from === this.length) this.scenes.pop();
     this.scenes.push({ from: this.length, scene });
   }
 
-  /** The first state, which was computed `age` ago (s): it is at time 0, and what follows counts from now. */
-  begin(state: State, age: number): void {
-    this.began = state.clock + age;
-    this.take(0, JSON.stringify(state), state);
+  /** The first state, which was computed `age` ago (s): it is at this time, and what follows counts from now. */
+  begin(state: State, age: number, time = 0): void {
+    this.began = state.clock + age - time;
+    this.take(time, JSON.stringify(state), state);
   }
 
   /** A state of the session, as text: when it was computed counts, not when it came. */
@@ -80,6 +90,11 @@ export class Recording {
     return raw === undefined ? null : (JSON.parse(raw) as State);
   }
 
+  /** The last state at or before a time (s); the first one before all. */
+  stateBefore(time: number): State | null {
+    return this.stateAt(this.columns.indexAt(time));
+  }
+
   /** Scenes, each from its first state on. */
   parts(): readonly { from: number; scene: Scene }[] {
     return this.scenes;
@@ -91,14 +106,21 @@ export class Recording {
   }
 
   json(): Blob {
+    const beside = [...this.beside].flatMap(([session, one], i) => [i === 0 ? ',"beside":[\n' : ",\n", ...one.text({ session }), "}"]);
+    return new Blob([...this.text({}), ...beside, beside.length > 0 ? "]}\n" : "}\n"], { type: "application/json" });
+  }
+
+  /** As JSON without the last brace. */
+  private text(more: object): string[] {
     const scene = this.sceneAt(0);
     const head = JSON.stringify({
+      ...more,
       model: scene.name, frame: scene.frame, task: scene.task, method: scene.method,
       joint_names: scene.coordinates.map((coordinate) => coordinate.name),
       units: scene.coordinates.map((coordinate) => coordinate.unit),
       times: [...this.columns.time.view()],
     });
-    return new Blob([head.slice(0, -1), ',"states":[\n', this.raws.join(",\n"), "\n]}\n"], { type: "application/json" });
+    return [head.slice(0, -1), ',"states":[\n', this.raws.join(",\n"), "\n]"];
   }
 
   /** One line for each state: the numbers of the head, SI and radians; an absent one stays empty. */

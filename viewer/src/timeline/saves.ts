@@ -65,7 +65,7 @@ export class Saves {
       this.source.say(`Frames per second are a number from ${RATE.least} to ${RATE.most}.`, true);
       return;
     }
-    const times = frameTimes(recording.duration, rate);
+    const times = frameTimes(recording.end, rate);
     if (times.length > MOST_FRAMES) {
       this.source.say(`${times.length} frames are more than ${MOST_FRAMES}: choose fewer per second.`, true);
       return;

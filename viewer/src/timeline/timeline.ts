@@ -8,7 +8,7 @@ import { Elsewhere } from "./elsewhere";
 import { readMotion, type Motion, type Sample } from "./motion";
 import { Player } from "./player";
 import { Plots } from "./plots";
-import { MOST, Recording } from "./recording";
+import { MOST, Recording, type Past } from "./recording";
 import { Saves } from "./saves";
 import { Trail } from "./trail";
 
@@ -28,11 +28,15 @@ type Told = {
   /** From where one looks, and what is drawn beside the robot. */
   look: () => Look;
   picture: () => Promise<Blob>;
+  /** What stands beside the robot is recorded with it, or no longer. */
+  recordBeside: (recording: Recording | null) => void;
+  /** What stands beside the robot is shown as it was, or as it is. */
+  showBeside: (past: Past | null) => void;
 };
 export type Moment = { scene: Scene; state: State };
 
 /** Messages that change nothing about the robot: they are sent while a recording is shown. */
-const READS: readonly ToServer["type"][] = ["overlays", "compare", "report", "distances", "states", "drive", "seen"];
+const READS: readonly ToServer["type"][] = ["overlays", "compare", "report", "distances", "states", "beside", "drive", "seen"];
 /** Messages that do not go on from the moment shown. */
 const FRESH: readonly ToServer["type"][] = ["configuration", "reset", "play", "pause"];
 /** Between drawings of what grows (ms). */
@@ -126,6 +130,7 @@ export class Timeline {
     this.records = this.session.eager = true;
     this.replace(new Recording(scene));
     this.recording?.begin(state, this.session.age);
+    this.tell.recordBeside(this.recording);
     this.grow();
   }
 
@@ -169,7 +174,7 @@ export class Timeline {
   /** The robot as it is. */
   live(): void {
     if (!this.leave()) return;
-    this.dock.at(this.recording?.duration ?? 0, true);
+    this.dock.at(this.recording?.end ?? 0, true);
     this.tell.redraw();
   }
 
@@ -207,6 +212,7 @@ export class Timeline {
   private show(moment: Moment & { index: number }): void {
     this.current = moment;
     this.plots.at(moment.index, this.player.time);
+    this.showBeside();
     this.tell.redraw();
     if (moment.index === this.awaited?.index) this.end(true);
   }
@@ -234,8 +240,18 @@ export class Timeline {
     const { time } = this.player;
     const index = this.recording.columns.indexAt(time);
     this.dock.at(time, false);
-    if (index === this.current?.index && this.wanted === null) this.plots.at(index, time);
-    else this.want(index);
+    if (index === this.current?.index && this.wanted === null) {
+      this.plots.at(index, time);
+      this.showBeside();
+    } else {
+      this.want(index);
+    }
+  }
+
+  /** Motions of files have nothing beside them. */
+  private showBeside(): void {
+    const { recording, current } = this;
+    this.tell.showBeside(recording && recording.file === null && current ? { recording, time: this.player.time, scene: current.scene } : null);
   }
 
   private want(index: number): void {
@@ -251,6 +267,7 @@ export class Timeline {
     this.wanted = this.here = null;
     const left = this.current !== null;
     this.current = null;
+    if (left) this.showBeside();
     this.tell.moved();
     return left;
   }
@@ -264,6 +281,7 @@ export class Timeline {
 
   private stop(): void {
     this.records = this.session.eager = false;
+    this.tell.recordBeside(null);
     this.plots.show(this.recording);
     this.tell.changed(false, this.recording?.length ?? 0);
   }
@@ -279,16 +297,22 @@ export class Timeline {
     this.grow();
   }
 
+  /** What stands beside the robot has moved. */
+  growBeside(): void {
+    if (this.records) this.grow();
+  }
+
   /** The recording has become longer. */
   private grow(): void {
     const { recording } = this;
     if (!recording) return;
-    this.player.setEnd(recording.duration);
-    this.dock.show(recording.columns, recording.duration);
+    const { end } = recording;
+    this.player.setEnd(end);
+    this.dock.show(recording.columns, end);
     if (this.here === null) {
-      this.dock.at(recording.duration, true);
-      this.player.time = recording.duration;
-      this.plots.at(recording.length - 1, recording.duration);
+      this.dock.at(end, true);
+      this.player.time = end;
+      this.plots.at(recording.length - 1, end);
     } else {
       this.dock.at(this.player.time, false);
     }
@@ -341,7 +365,7 @@ export class Timeline {
     if (!this.current || READS.includes(type)) return;
     const { q } = this.current.state;
     this.leave();
-    this.dock.at(this.recording?.duration ?? 0, true);
+    this.dock.at(this.recording?.end ?? 0, true);
     if (!FRESH.includes(type)) this.session.send({ type: "configuration", q });
   }
 }

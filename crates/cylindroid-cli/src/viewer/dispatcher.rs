@@ -1,15 +1,18 @@
 //! Dispatches each client message to its session and returns the answer.
 
+use std::collections::BTreeSet;
+
 use cylindroid::{Error, Result, Twist, Vec3};
 use serde_json::Value;
 
 use super::avoidance::{GAP, MARGIN};
+use super::beside::{Beside, ModelBeside};
 use super::client_view::ClientView;
 use super::compare::compare;
 use super::elsewhere::Elsewhere;
 use super::inverse_parameters::invert_by;
 use super::messages::{Complaint, Message, Request, TargetPose, TwistCommand};
-use super::names::Overlay;
+use super::names::{Overlay, is_plain};
 use super::obstacle_messages::{AddObstacle, AvoidCollisions, MoveObstacle};
 use super::reaching::{Reached, assembled, reach};
 use super::reports::Report;
@@ -18,6 +21,8 @@ use crate::obstacle::ObstacleArg;
 
 /// Longest name of an obstacle, in characters.
 const LONGEST_NAME: usize = 60;
+/// Maximum number of models beside that of a session.
+const MOST_BESIDE: usize = 8;
 
 /// The answer to a message.
 #[derive(Debug)]
@@ -135,6 +140,10 @@ fn obey(
             session.avoid(on.then_some(distances)).map_err(at("avoid_collisions"))?;
             return Ok(Reply::Scene);
         }
+        Message::Beside(asked) => {
+            session.show_beside(models_beside(asked)?);
+            return Ok(Reply::Scene);
+        }
         Message::Drive(drive) => return Ok(Reply::Drive(drive.on)),
         Message::Seen(seen) => return Ok(Reply::Seen(seen.seq)),
     }
@@ -155,4 +164,36 @@ fn obstacle(asked: AddObstacle) -> std::result::Result<ObstacleArg, Complaint> {
     }
     let world_from_shape = TargetPose { position, quaternion }.pose("add_obstacle")?;
     Ok(ObstacleArg { name, shape: shape.geometry(), world_from_shape })
+}
+
+/// The models of a message, whose quaternions get the length one.
+fn models_beside(asked: Beside) -> std::result::Result<Vec<ModelBeside>, Complaint> {
+    let mut models = asked.models;
+    if models.len() > MOST_BESIDE {
+        let count = models.len().to_string();
+        let what = format!("at most {MOST_BESIDE} models are shown beside that of a session");
+        return Err(Complaint::new("beside.models", &count, &what, "leave out the others"));
+    }
+    let mut sessions = BTreeSet::new();
+    for (i, model) in models.iter_mut().enumerate() {
+        let place = format!("beside.models[{i}]");
+        let refuse = |field: &str, name: &str, what: &str, way_out: &str| {
+            Err(Complaint::new(&format!("{place}.{field}"), name, what, way_out))
+        };
+        let id = model.model.as_deref().unwrap_or("command");
+        for (field, name) in [("model", id), ("session", model.session.as_str())] {
+            if !is_plain(name) {
+                let what = "it is not 1 to 60 letters, digits and characters of '-._~'";
+                return refuse(field, name, what, "give such a name");
+            }
+        }
+        if !sessions.insert(model.session.clone()) {
+            let what = "two models cannot have one session";
+            return refuse("session", &model.session, what, "name another session");
+        }
+        let (position, quaternion) = (model.position, model.quaternion);
+        let q = TargetPose { position, quaternion }.pose(&place)?.rotation.to_quaternion();
+        model.quaternion = [q.w, q.x, q.y, q.z];
+    }
+    Ok(models)
 }

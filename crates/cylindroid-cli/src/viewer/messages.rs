@@ -7,6 +7,7 @@ use cylindroid::{Error, Pose, Vec3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::beside::Beside;
 use super::obstacle_messages::{AddObstacle, AvoidCollisions, Distances, MoveObstacle};
 
 /// Maximum message size [bytes].
@@ -48,6 +49,7 @@ pub(super) enum Message {
     MoveObstacle(MoveObstacle),
     RemoveObstacle(Name),
     AvoidCollisions(AvoidCollisions),
+    Beside(Beside),
     Drive(Drive),
     Seen(Seen),
 }
@@ -69,7 +71,7 @@ impl Message {
     }
 }
 
-const TYPES: [&str; 23] = [
+const TYPES: [&str; 24] = [
     "joint",
     "configuration",
     "target",
@@ -91,6 +93,7 @@ const TYPES: [&str; 23] = [
     "move_obstacle",
     "remove_obstacle",
     "avoid_collisions",
+    "beside",
     "drive",
     "seen",
 ];

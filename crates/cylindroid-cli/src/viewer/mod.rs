@@ -1,6 +1,6 @@
 //! The server of the web viewer: docs/viewer.md is its contract.
 //!
-//! Clients join sessions, each alone or several by name. From the leaves up: `json`,
+//! Clients join sessions, each alone or several by name. From the leaves up: `json`, `beside`,
 //! `obstacle_messages`, `messages`, `names`, `inverse_parameters`, `assets`, `reaching` and
 //! `avoidance` do not depend on a session; `start` is the initial state of sessions, `bodies` their
 //! obstacles and distances; `session` is a configuration with target and servo; `client_view` what
@@ -14,6 +14,7 @@
 
 mod assets;
 mod avoidance;
+mod beside;
 mod bodies;
 mod client_view;
 mod compare;
@@ -57,6 +58,7 @@ pub use self::drawings::{Drawing, DrawnShape};
 pub use self::embedded::{ShowOptions, Viewer};
 #[cfg(fuzzing)]
 pub(crate) use self::fed::feed;
+pub(crate) use self::names::random_name;
 pub(crate) use self::server::Server;
 pub(crate) use self::start::{Start, StartBodies};
 pub(crate) use self::watch::Watch;

@@ -1,6 +1,9 @@
-//! Names of overlays and reports.
+//! Names of overlays, reports, sessions and opened models.
 
 use cylindroid::{Error, Result};
+
+/// Longest name of a session.
+const LONGEST_NAME: usize = 60;
 
 /// The reports.
 pub(super) const REPORTS: [&str; 4] = ["info", "mobility", "manipulability", "screws"];
@@ -89,4 +92,17 @@ impl Overlay {
             }
         }
     }
+}
+
+/// True for 1 to 60 letters, digits and characters of `-._~`, which name sessions.
+pub(super) fn is_plain(name: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-._~".contains(c);
+    (1..=LONGEST_NAME).contains(&name.len()) && name.chars().all(is_plain)
+}
+
+/// So many random bytes in hexadecimal.
+pub(crate) fn random_name<const BYTES: usize>() -> std::result::Result<String, getrandom::Error> {
+    let mut bits = [0; BYTES];
+    getrandom::fill(&mut bits)?;
+    Ok(bits.iter().map(|byte| format!("{byte:02x}")).collect())
 }

@@ -1,5 +1,8 @@
 //! Models that the page opens besides that of the command: those of the catalogue, and files that
 //! it sends, which lie in a temporary folder as long as the model is open.
+//!
+//! The id of a model is random, so that a server that was restarted has no other model of this id.
+//! Pages keep the request that opened it, and send it again.
 
 use std::fs;
 use std::io;
@@ -10,6 +13,8 @@ use cylindroid::{Error, Mechanism, catalogue};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 
+use super::json::text;
+use super::names::random_name;
 use super::refusal::Refusal;
 use super::sessions::Sessions;
 use super::start::{Start, StartBodies};
@@ -22,25 +27,22 @@ const MOST_FILES: usize = 2000;
 const MOST_MODELS: usize = 16;
 /// Extensions of model files. A xacro file would be a program.
 const MODELS: [&str; 5] = ["urdf", "xml", "mjcf", "sdf", "toml"];
+/// Random bytes of an id.
+const ID: usize = 8;
 
 /// The models that are open.
 #[derive(Debug, Default)]
 pub(super) struct Opened {
-    models: Mutex<Models>,
-}
-
-#[derive(Debug, Default)]
-struct Models {
-    count: usize,
-    open: Vec<Model>,
+    models: Mutex<Vec<Model>>,
 }
 
 #[derive(Debug)]
 struct Model {
     id: String,
     sessions: Sessions,
+    head: Head,
     /// Its files, removed with it.
-    _folder: Option<TempDir>,
+    folder: Option<TempDir>,
 }
 
 /// A model that is open.
@@ -60,7 +62,7 @@ pub(super) struct Offer {
 }
 
 /// What is to be opened: the first line of a request, as JSON; the bytes of the files follow.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Head {
     /// A model of the catalogue, or one of the files.
@@ -68,6 +70,9 @@ struct Head {
     /// Paths and sizes [bytes].
     #[serde(default)]
     files: Vec<(String, usize)>,
+    /// That of the model before the server was restarted.
+    #[serde(default)]
+    id: Option<String>,
 }
 
 /// Paths and contents.
@@ -76,47 +81,71 @@ type Files<'a> = Vec<(PathBuf, &'a [u8])>;
 impl Opened {
     /// Those that are open, in the order of their opening.
     pub(super) fn known(&self) -> Vec<Known> {
-        let known = |model: &Model| {
-            let name = model.sessions.start().mechanism.name().to_owned();
-            Known { id: model.id.clone(), name }
-        };
-        self.models().open.iter().map(known).collect()
+        self.models().iter().map(Model::known).collect()
     }
 
     /// The sessions of a model.
     pub(super) fn sessions(&self, id: &str) -> Option<Sessions> {
         let models = self.models();
-        Some(models.open.iter().find(|model| model.id == id)?.sessions.clone())
+        Some(models.iter().find(|model| model.id == id)?.sessions.clone())
     }
 
-    /// Opens the model of a request, beside these sessions.
+    /// The request that opens a model again.
+    pub(super) fn request(&self, id: &str) -> Option<Vec<u8>> {
+        let (head, folder) = {
+            let models = self.models();
+            let model = models.iter().find(|model| model.id == id)?;
+            let folder = model.folder.as_ref().map(|folder| folder.path().to_owned());
+            (model.head.clone(), folder)
+        };
+        let mut request = text(&head).into_bytes();
+        request.push(b'\n');
+        for (name, _) in &head.files {
+            request.extend(fs::read(folder.as_ref()?.join(name)).ok()?);
+        }
+        Some(request)
+    }
+
+    /// Opens the model of a request, beside these sessions, unless one of its id is open.
     pub(super) fn open(&self, beside: &Sessions, body: &[u8]) -> Result<Known, Box<Refusal>> {
-        let (head, files) = read(body)?;
+        let (mut head, files) = read(body)?;
+        let id = match head.id.take() {
+            Some(id) => id,
+            None => random_name::<ID>().map_err(|error| {
+                Refusal::new(format!("the model gets no id: {error}"), "try it again")
+            })?,
+        };
+        if let Some(model) = self.models().iter().find(|model| model.id == id) {
+            return Ok(model.known());
+        }
+        head.id = Some(id.clone());
+        let open = head.open.clone();
         if files.is_empty() {
             let names: Vec<&str> = catalogue::entries().into_iter().map(|e| e.name).collect();
-            if !names.contains(&head.open.as_str()) {
-                return Err(Refusal::of(&Error::unknown("model", &head.open, names), None));
+            if !names.contains(&open.as_str()) {
+                return Err(Refusal::of(&Error::unknown("model", &open, names), None));
             }
-            let loaded = cylindroid::load(&head.open);
+            let loaded = cylindroid::load(&open);
             return loaded
-                .and_then(|mechanism| self.keep(beside, mechanism, &head.open, None))
+                .and_then(|mechanism| self.keep(beside, (mechanism, &open), (id, head), None))
                 .map_err(|error| Refusal::of(&error, None));
         }
         let (folder, path) = unpack(&files).map_err(|error| {
             Refusal::new(format!("the files cannot be kept: {error}"), "free space on the server")
         })?;
-        let file = path.join(&head.open);
+        let file = path.join(&open);
         // The folder is there until the line at fault has been read.
         let refuse = |error: Error| Refusal::of(&error, Some(&path));
         let mechanism = cylindroid::load_file(&file).map_err(refuse)?;
-        self.keep(beside, mechanism, &file.to_string_lossy(), Some(folder)).map_err(refuse)
+        let file = file.to_string_lossy();
+        self.keep(beside, (mechanism, &file), (id, head), Some(folder)).map_err(refuse)
     }
 
     fn keep(
         &self,
         beside: &Sessions,
-        mechanism: Mechanism,
-        file: &str,
+        (mechanism, file): (Mechanism, &str),
+        (id, head): (String, Head),
         folder: Option<TempDir>,
     ) -> cylindroid::Result<Known> {
         let frame = if mechanism.is_closed() { mechanism.reference() } else { mechanism.tool() };
@@ -124,8 +153,12 @@ impl Opened {
         let mut start =
             Start::new((mechanism, file), &q, frame.into(), &[], StartBodies::default())?;
         let mut models = self.models();
-        if models.open.len() >= MOST_MODELS {
-            let unused = models.open.iter().position(|model| !model.sessions.are_in_use());
+        // Another page may have opened it again meanwhile.
+        if let Some(model) = models.iter().find(|model| model.id == id) {
+            return Ok(model.known());
+        }
+        if models.len() >= MOST_MODELS {
+            let unused = models.iter().position(|model| !model.sessions.are_in_use());
             let Some(unused) = unused else {
                 return Err(Error::InvalidOption {
                     option: "models",
@@ -133,18 +166,24 @@ impl Opened {
                     reason: "so many are open; close the pages of one of them".to_owned(),
                 });
             };
-            models.open.remove(unused);
+            models.remove(unused);
         }
-        models.count += 1;
-        let (id, name) = (models.count.to_string(), start.mechanism.name().to_owned());
         start.folders = start.folders.below(&beside.start().folders, &format!("models/{id}"));
-        let known = Known { id: id.clone(), name };
-        models.open.push(Model { id, sessions: beside.beside(start), _folder: folder });
+        let model = Model { id, sessions: beside.beside(start), head, folder };
+        let known = model.known();
+        models.push(model);
         Ok(known)
     }
 
-    fn models(&self) -> MutexGuard<'_, Models> {
+    fn models(&self) -> MutexGuard<'_, Vec<Model>> {
         self.models.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Model {
+    fn known(&self) -> Known {
+        let name = self.sessions.start().mechanism.name().to_owned();
+        Known { id: self.id.clone(), name }
     }
 }
 
@@ -161,6 +200,10 @@ fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
     let (head, mut rest) = (&body[..end], body.get(end + 1..).unwrap_or_default());
     let head: Head = serde_json::from_slice(head)
         .map_err(|error| refuse(format!("the first line of the request is refused: {error}")))?;
+    let is_id = |id: &String| id.len() == 2 * ID && id.bytes().all(|b| b.is_ascii_hexdigit());
+    if !head.id.iter().all(is_id) {
+        return Err(refuse(format!("the id of a model has {} digits in hexadecimal", 2 * ID)));
+    }
     if head.files.len() > MOST_FILES {
         let count = head.files.len();
         let help = "leave out files that the model does not refer to";

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::output::MimicJson;
 
+use super::beside::ModelBeside;
 use super::inverse_parameters::{Chosen, PITCH};
 use super::json::PoseJson;
 use super::names::{Overlay, REPORTS};
@@ -42,6 +43,7 @@ pub(super) struct Scene<'a> {
     home: &'a [f64],
     obstacles: Vec<ObstacleJson<'a>>,
     avoidance: Option<AvoidanceJson>,
+    beside: &'a [ModelBeside],
     ignored: usize,
 }
 
@@ -330,6 +332,7 @@ impl<'a> Scene<'a> {
             home: session.home(),
             obstacles: obstacles(session),
             avoidance: session.avoided().map(|(gap, margin)| AvoidanceJson { gap, margin }),
+            beside: session.beside(),
             ignored: mechanism.report().ignored.len(),
         }
     }

@@ -137,6 +137,7 @@ impl Server {
             .route(&format!("{folder}/ws"), get(session))
             .route(&format!("{folder}/mesh/{{folder}}/{{*path}}"), get(mesh))
             .route(&format!("{folder}/models"), get(models).post(open))
+            .route(&format!("{folder}/models/{{id}}"), get(opened_request))
             .route(&format!("{folder}/models/{{id}}/mesh/{{folder}}/{{*path}}"), get(opened_mesh))
             .layer(DefaultBodyLimit::max(LARGEST_REQUEST))
             .fallback(get(page))
@@ -222,6 +223,16 @@ async fn open(State(shared): State<Shared>, body: Bytes) -> Response {
     match opened.unwrap_or_else(failed) {
         Ok(known) => (JSON, text(&known)).into_response(),
         Err(refusal) => (StatusCode::UNPROCESSABLE_ENTITY, JSON, text(&refusal)).into_response(),
+    }
+}
+
+async fn opened_request(State(shared): State<Shared>, Path(id): Path<String>) -> Response {
+    let read = move || shared.opened.request(&id);
+    match tokio::task::spawn_blocking(read).await {
+        Ok(Some(request)) => {
+            ([(header::CONTENT_TYPE, "application/octet-stream")], request).into_response()
+        }
+        _ => (StatusCode::NOT_FOUND, "There is no such model.").into_response(),
     }
 }
 

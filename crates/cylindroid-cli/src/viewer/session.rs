@@ -20,6 +20,7 @@ use cylindroid::{Error, Mechanism, Pose, Result, Servo, ServoOptions, State};
 
 use super::assets::Folders;
 use super::avoidance::{Avoidance, GAP, LastStep, MARGIN};
+use super::beside::ModelBeside;
 use super::bodies::Bodies;
 use super::inverse_parameters::Chosen;
 use super::messages::{Complaint, NullSpace, TargetPose};
@@ -56,6 +57,8 @@ pub(super) struct Session {
     /// In velocity mode.
     driven: Option<Driven>,
     bodies: Bodies,
+    /// The models that are shown beside its own.
+    beside: Vec<ModelBeside>,
     /// Least distance and margin (m), if collisions are avoided, and the servo that does, or the
     /// reason why there is none.
     avoidance: Option<((f64, f64), Result<Avoidance>)>,
@@ -97,6 +100,7 @@ impl Session {
             self_motion: None,
             driven: None,
             bodies: Bodies::new(&start),
+            beside: Vec::new(),
             avoidance: None,
             steps: 0,
             method,
@@ -189,6 +193,15 @@ impl Session {
 
     pub(super) fn method(&self) -> &Chosen {
         &self.method
+    }
+
+    pub(super) fn beside(&self) -> &[ModelBeside] {
+        &self.beside
+    }
+
+    /// Shows these models beside its own, in place of those before.
+    pub(super) fn show_beside(&mut self, models: Vec<ModelBeside>) {
+        self.beside = models;
     }
 
     /// True if another step would change nothing.

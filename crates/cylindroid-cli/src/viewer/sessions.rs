@@ -8,14 +8,13 @@ use axum::extract::ws::Utf8Bytes;
 use cylindroid::Result;
 use tokio::sync::Semaphore;
 
+use super::names::is_plain;
 use super::session::Session;
 use super::shared_session::SharedSession;
 use super::start::Start;
 
 /// Maximum number of concurrent clients.
 const MOST_CLIENTS: usize = 100;
-/// Longest name of a session.
-const LONGEST_NAME: usize = 60;
 
 /// The sessions of a model.
 #[derive(Debug, Clone)]
@@ -66,8 +65,7 @@ impl Asked {
 }
 
 fn checked(name: &str) -> std::result::Result<&str, &'static str> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-._~".contains(c);
-    if (1..=LONGEST_NAME).contains(&name.len()) && name.chars().all(is_plain) {
+    if is_plain(name) {
         Ok(name)
     } else {
         Err("The name of a session has 1 to 60 letters, digits and characters of '-._~'.")

@@ -17,8 +17,8 @@ impl Session {
 
     /// A session of this start that goes on where this one is. Joints keep their values by their
     /// names where the limits permit them and the loops close; frame, task, inverse, actuated
-    /// joints, obstacles and avoidance are kept as far as the model permits. The target is at the
-    /// tool.
+    /// joints, obstacles and avoidance are kept as far as the model permits, and so are the models
+    /// beside it. The target is at the tool.
     pub(in super::super) fn reloaded(&self, start: &Arc<Start>) -> Result<Self> {
         let mut new = Self::new(Arc::clone(start))?;
         new.take_choices(self);
@@ -27,6 +27,7 @@ impl Session {
         new.stand(&q)?;
         new.take_method(self);
         new.take_obstacles(self);
+        new.beside.clone_from(&self.beside);
         if new.avoided() != self.avoided() {
             let _ = new.avoid(self.avoided());
         }

@@ -65,6 +65,7 @@ fn a_changed_file_is_shown_with_joints_and_choices_where_they_were() {
     client.done(json!({"type": "task", "name": "position"}));
     client.done(json!({"type": "method", "name": "damped", "parameters": {"damping": 0.25}}));
     client.done(json!({"type": "add_obstacle", "name": "ball", "shape": {"kind": "sphere", "radius": 0.1}, "position": [0, 1, 0]}));
+    client.done(json!({"type": "beside", "models": [{"session": "other", "position": [0, 1, 0], "quaternion": [1, 0, 0, 0], "transparent": false}]}));
     client.done(json!({"type": "overlays", "names": ["joint-axes"]}));
     client.done(joint("a", -0.25));
     client.done(joint("b", 0.5));
@@ -75,6 +76,7 @@ fn a_changed_file_is_shown_with_joints_and_choices_where_they_were() {
     assert_eq!((&scene["frame"], &scene["task"]["name"]), (&json!("upper"), &json!("position")));
     assert_eq!(scene["method"]["parameters"], json!({"damping": 0.25}));
     assert_eq!(scene["obstacles"][0]["name"], "ball");
+    assert_eq!(scene["beside"][0]["session"], "other");
     let state = client.next("state");
     assert_eq!(state["q"], json!([-0.25, 0.5]));
     assert_eq!(state["target"], state["tool"]);

@@ -86,6 +86,49 @@ fn observers_are_refused_until_they_take_over() {
     told(&mut driver, "you", 1);
 }
 
+/// Models beside the first are those of the session: all clients have them, and find their joints in
+/// sessions that are named there.
+#[test]
+fn models_beside_the_first_are_shared() {
+    let server = Server::new(&["panda"]);
+    let mut driver = server.client_of("?session=demo");
+    assert_eq!(driver.next("scene")["beside"], json!([]));
+    let mut observer = server.client_of("?session=demo");
+    told(&mut observer, "another", 2);
+    let copy = |session: &str, quaternion: [f64; 4]| {
+        json!({"model": null, "session": session, "position": [1.0, 0.0, 0.5],
+               "quaternion": quaternion, "transparent": true})
+    };
+    let beside = |models: Value| json!({"type": "beside", "models": models});
+    driver.say(&beside(json!([copy("demo-1", [2.0, 0.0, 0.0, 0.0])])));
+    let models = json!([copy("demo-1", [1.0, 0.0, 0.0, 0.0])]);
+    for client in [&mut driver, &mut observer] {
+        client.until(|m| m["type"] == "scene" && m["beside"] == models);
+    }
+    let mut joints = server.client_of("?session=demo-1");
+    joints.done(joint(0.25));
+    let mut seen = server.client_of("?session=demo-1&observe");
+    first_coordinate(&mut seen, 0.25);
+    assert_eq!(server.client_of("?session=demo").next("scene")["beside"], models);
+
+    assert_eq!(observer.complaint(&beside(json!([])))["place"], "session");
+    let standing = [1.0, 0.0, 0.0, 0.0];
+    let many: Vec<Value> = (0..9).map(|i| copy(&i.to_string(), standing)).collect();
+    for (models, place, word) in [
+        (json!(many), "beside.models", "at most 8"),
+        (json!([copy("a b", standing)]), "beside.models[0].session", "1 to 60"),
+        (json!([copy("a", standing), copy("a", standing)]), "beside.models[1].session", "two"),
+        (json!([copy("a", [0.0; 4])]), "beside.models[0].quaternion", "quaternion"),
+        (json!([{"session": "a"}]), "beside.models[0]", "position"),
+    ] {
+        let complaint = driver.complaint(&beside(models));
+        let message = complaint["message"].as_str().unwrap();
+        assert!(complaint["place"] == place && message.contains(word), "{complaint}");
+    }
+    driver.say(&beside(json!([])));
+    observer.until(|m| m["type"] == "scene" && m["beside"] == json!([]));
+}
+
 #[test]
 fn who_comes_where_nobody_drives_drives() {
     let server = Server::new(&["panda"]);
