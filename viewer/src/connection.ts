@@ -3,8 +3,8 @@
 export type Link = "connecting" | "open" | "lost";
 type Handlers = {
   message: (raw: string) => void;
-  /** `wait` is the pause before the next attempt (s), while the line is lost. */
-  link: (link: Link, wait: number) => void;
+  /** While the line is lost, `wait` is the pause before the next attempt (s); `wasOpen` is false where it could not be opened. */
+  link: (link: Link, wait: number, wasOpen: boolean) => void;
 };
 
 const FIRST_PAUSE = 0.5;
@@ -15,11 +15,13 @@ export class Connection {
   private pause = FIRST_PAUSE;
   private timer = 0;
   private link: Link = "connecting";
+  private isClosed = false;
+  private readonly online = (): void => this.retry();
 
   /** `url` is asked for anew for each attempt. */
   constructor(private readonly url: () => string, private readonly handlers: Handlers) {
     this.open();
-    addEventListener("online", () => this.retry());
+    addEventListener("online", this.online);
   }
 
   /** Sends a message; false where there is no line. */
@@ -31,21 +33,20 @@ export class Connection {
 
   /** Ends it for good. */
   close(): void {
-    const { socket } = this;
-    this.socket = null;
-    clearTimeout(this.timer);
-    socket?.close();
+    this.isClosed = true;
+    removeEventListener("online", this.online);
+    this.leave();
   }
 
   /** Tries now instead of after the pause. */
   retry(): void {
-    if (this.link !== "lost") return;
-    this.renew();
+    if (this.link === "lost") this.renew();
   }
 
   /** Opens another line in place of this one. */
   renew(): void {
-    this.close();
+    if (this.isClosed) return;
+    this.leave();
     this.open();
   }
 
@@ -54,24 +55,35 @@ export class Connection {
     this.pause = FIRST_PAUSE;
   }
 
+  private leave(): void {
+    const { socket } = this;
+    this.socket = null;
+    clearTimeout(this.timer);
+    socket?.close();
+  }
+
   private open(): void {
     const socket = new WebSocket(this.url());
+    let wasOpen = false;
     this.socket = socket;
-    socket.onopen = () => this.tell("open", 0);
+    socket.onopen = () => {
+      wasOpen = true;
+      this.tell("open", 0, wasOpen);
+    };
     socket.onmessage = (event) => {
       if (socket === this.socket && typeof event.data === "string") this.handlers.message(event.data);
     };
     socket.onclose = () => {
       if (socket !== this.socket) return;
-      this.tell("lost", this.pause);
+      this.tell("lost", this.pause, wasOpen);
       this.timer = window.setTimeout(() => this.open(), this.pause * 1000);
       this.pause = Math.min(this.pause * 1.7, LONGEST_PAUSE);
     };
   }
 
-  private tell(link: Link, wait: number): void {
+  private tell(link: Link, wait: number, wasOpen: boolean): void {
     this.link = link;
-    this.handlers.link(link, wait);
+    this.handlers.link(link, wait, wasOpen);
   }
 }
 

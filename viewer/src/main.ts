@@ -206,12 +206,17 @@ function start(): void {
     else return;
     event.preventDefault();
   });
-  const restore = new Restore(session, overlays, stage, page.toast, (isNew) => {
+  const restore = new Restore(session, overlays, stage, page.toast, (hasBegun) => {
     distances.ask();
-    if (isNew) companions.restore();
+    if (hasBegun) companions.restore();
   }, () => shown() ?? {});
   const model = new URLSearchParams(location.search).get("model");
-  if (model !== null) models.follow(session, model, { opens: () => restore.drove, failed: (words) => page.toast(words, true) });
+  if (model !== null) {
+    models.follow(session, model, {
+      opens: (isKept) => restore.drove === "you" || (isKept && restore.drove === "nobody"),
+      failed: (words) => page.toast(words, true),
+    });
+  }
 
   async function share(): Promise<void> {
     const shot = restore.now();

@@ -1,6 +1,6 @@
 /** Brings a session to a configuration: that of the address on load, the last one after the server came back. */
 import type { Overlays } from "./overlays/overlays";
-import type { About, Scene, State } from "./protocol";
+import type { About, Driver, Scene, State } from "./protocol";
 import type { Stage } from "./scene/stage";
 import type { Session } from "./session";
 import { parse, snapshot, type Snapshot } from "./share";
@@ -12,16 +12,16 @@ export class Restore {
   /** Of the session: it is gone when the connection is. */
   private about: About | null = null;
   private fresh = true;
-  /** Whether this page drove when the connection was lost; true before. */
-  drove = true;
+  /** Who drove when the connection was lost; this page before. */
+  drove: Driver = "you";
 
   constructor(
     private readonly session: Session,
     private readonly overlays: Overlays,
     private readonly stage: Stage,
     private readonly say: (words: string, bad?: boolean) => void,
-    /** Called for every connection; `isNew`: its session is new, and this page drives it. */
-    private readonly begin: (isNew: boolean) => void,
+    /** Called for every connection; `hasBegun`: its session is new, or that of a program that was restarted, and this page drives it. */
+    private readonly begin: (hasBegun: boolean) => void,
     /** What is shown: the session, or a moment of a recording. */
     private readonly shown: () => Partial<{ scene: Scene | null; state: State | null }>,
   ) {
@@ -37,7 +37,7 @@ export class Restore {
       this.fresh = true;
       const { scene, state } = session;
       const { about } = this;
-      this.drove = about === null || about.driver === "you";
+      this.drove = about?.driver ?? "you";
       // The robot as it was, whatever is shown.
       const shot = scene && state && this.shot(scene, state);
       this.last = shot && { shot, begun: about?.begun ?? null };
@@ -70,10 +70,11 @@ export class Restore {
     }
     this.last = null;
     session.send({ type: "overlays", names: this.overlays.names() });
-    this.begin(isNew);
+    // The robot is the program's, what stands beside it is of its pages.
+    this.begin(isNew || (session.drives && last !== null && about?.begun !== last.begun));
     this.apply(scene);
     // Whoever drove before drives again.
-    if (isRestored && !this.drove) session.send({ type: "drive", on: false });
+    if (isRestored && this.drove === "another") session.send({ type: "drive", on: false });
     return true;
   }
 

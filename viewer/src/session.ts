@@ -15,7 +15,7 @@ type Events = {
   model: ModelNews;
   /** A message, before it goes. */
   sending: ToServer;
-  link: { link: Link; wait: number };
+  link: { link: Link; wait: number; wasOpen: boolean };
   /** A state as it came, before any is dropped: for recordings. */
   raw: string;
 };
@@ -51,12 +51,14 @@ export class Session {
     this.outbox = new Outbox((message) => this.send(message));
     this.connection = new Connection(url, {
       message: (raw) => this.receive(raw),
-      link: (link, wait) => {
+      link: (link, wait, wasOpen) => {
         this.link = link;
         if (link !== "open") this.newest = null;
         if (link === "lost") this.about = null;
+        // There is no server: what the last one said is over.
+        if (!wasOpen) this.isModelGone = false;
         this.outbox.clear();
-        this.emit("link", { link, wait });
+        this.emit("link", { link, wait, wasOpen });
       },
     });
   }

@@ -111,16 +111,17 @@ test("an observer sees the models beside the first, and moves them once it drive
 /**
  * Whether the links of the model beside the first are drawn at these poses.
  * @param {import("playwright-core").Page} page
- * @param {string} path of its robot
+ * @param {"film" | "viewer" | "gone"} by who draws it
  * @param {{ quaternion: number[] }[]} links
  */
-async function untilDrawnAt(page, path, links) {
+async function untilDrawnAt(page, by, links) {
   await page.waitForFunction(([from, wanted]) => {
     const { viewer, film } = /** @type {any} */ (window);
-    const robot = from === "film" ? film.beside.all.values().next().value.body.robot : [...viewer.companions.all.values()][0].robot;
-    const drawn = robot.links.flatMap((/** @type {any} */ { frame: { quaternion: { w, x, y, z } } }) => [w, x, y, z]);
+    const { all } = from === "film" ? film.beside : from === "gone" ? viewer.companions.gone : viewer.companions;
+    const [model] = all.values();
+    const drawn = !model?.group.visible ? [] : model.robot.links.flatMap((/** @type {any} */ { frame: { quaternion: { w, x, y, z } } }) => [w, x, y, z]);
     return drawn.length === wanted.length && drawn.every((/** @type {number} */ value, /** @type {number} */ i) => Math.abs(value - (wanted[i] ?? NaN)) < 1e-9);
-  }, /** @type {[string, number[]]} */ ([path, links.flatMap(({ quaternion }) => quaternion)]));
+  }, /** @type {[string, number[]]} */ ([by, links.flatMap(({ quaternion }) => quaternion)]));
 }
 
 test("models beside the first are recorded and played with it, here and on a page by itself", () =>
@@ -152,10 +153,23 @@ test("models beside the first are recorded and played with it, here and on a pag
     await writeFile(path, await saved(page, "Save HTML that plays the recording by itself"));
     await page.getByRole("button", { name: "live" }).click();
     await untilDrawnAt(page, "viewer", track.states.at(-1).links);
+    // One that is removed remains in the recording.
+    await page.evaluate((time) => /** @type {any} */ (window).viewer.timeline.player.seek(time), track.times[at]);
+    await untilDrawnAt(page, "viewer", track.states[at].links);
+    await page.getByRole("button", { name: "Remove the model beside, 1" }).click();
+    await untilBeside(page, []);
+    await untilDrawnAt(page, "gone", track.states[at].links);
+    await page.getByRole("button", { name: "live" }).click();
+    await page.waitForFunction(() => [.../** @type {any} */ (window).viewer.companions.gone.all.values()].every(({ group }) => !group.visible));
     const film = await page.context().newPage();
     await film.goto(pathToFileURL(path).href);
     await film.waitForFunction(() => /** @type {any} */ (window).film?.stage.frames > 1);
     await untilDrawnAt(film, "film", track.states[0].links);
+    const names = await film.evaluate(() => {
+      const { recording } = /** @type {any} */ (window).film;
+      return [...recording.beside.keys(), ...recording.sceneAt(0).beside.flatMap((/** @type {any} */ one) => [one.model, one.session])];
+    });
+    assert.deepEqual(names, ["1", null, "1"], "none of the server");
     await film.evaluate((time) => /** @type {any} */ (window).film.player.seek(time), track.times[at]);
     await untilDrawnAt(film, "film", track.states[at].links);
     await picture(film, "beside-film");

@@ -112,7 +112,7 @@ test("models that the page opened are opened again, with their joints, obstacles
     });
   }, { expect: /WebSocket|net::ERR_/ }));
 
-test("a server that opens no files is asked once, and says so once", () =>
+test("a server that opens no files is asked once, and says so once; the next one is asked again", () =>
   visit(["panda"], async (page, first) => {
     await openCrane(page);
     await untilKept(page, 1);
@@ -137,7 +137,35 @@ test("a server that opens no files is asked once, and says so once", () =>
       assert.equal(said.length, 1, `${said}`);
       await page.getByText("The server does not have this model.").waitFor();
     });
+    await page.getByText("The server has stopped.").waitFor();
+    await served(["panda", "--port", new URL(first.url).port], async () => {
+      await page.getByText("The connection is restored, with the previous configuration.").waitFor();
+      await until(page, "Math.abs(state.q[0] - 0.5) < 1e-9");
+      assert.equal(posts.length, 2);
+    });
   }, { expect: /WebSocket|net::ERR_|403/ }));
+
+test("a model that nobody drove is opened again by a page that has driven", () =>
+  served(["panda"], async (first) => {
+    const opened = await (await fetch(`${first.url}models`, { method: "POST", body: '{"open": "ur5e"}\n' })).json();
+    await look(`${first.url}?model=${opened.id}&session=demo`, async (page) => {
+      await page.locator(".role").getByText("Driving, 1 page").waitFor();
+      await enter(page.locator('[data-panel="joints"] .field').first(), 0.5);
+      await until(page, "state.q[0] === 0.5");
+      await untilKept(page, 1);
+      await page.locator('[data-role="drive"]').click();
+      await page.locator(".role").getByText("Nobody drives, 1 page").waitFor();
+      const posts = sent(page);
+      await first.stop();
+      await page.getByText("The server has stopped.").waitFor();
+      await served(["panda", "--port", new URL(first.url).port], async () => {
+        await page.getByText("The connection is restored, with the previous configuration.").waitFor();
+        await page.locator(".role").getByText("Driving, 1 page").waitFor();
+        await until(page, "Math.abs(state.q[0] - 0.5) < 1e-9");
+        assert.equal(posts.length, 1);
+      });
+    }, { expect: /WebSocket|net::ERR_/ });
+  }));
 
 test("an observer opens no model: the page that drives does", () =>
   served(["panda"], async (first) => {
@@ -153,7 +181,7 @@ test("an observer opens no model: the page that drives does", () =>
         for (const page of [driver, observer]) await until(page, "state.q[0] === 0.5");
         await untilKept(driver, 2);
         const posts = sent(observer);
-        // The driver shall wait until it is told to come back.
+        // The driver waits until it is told to come back.
         await driver.evaluate(() => {
           const { session, companions } = /** @type {any} */ (window).viewer;
           for (const one of [session, ...[...companions.all.values()].map((all) => all.session)]) one.connection.pause = 600;

@@ -85,7 +85,7 @@ test("two pages of a session find it again on a server that was restarted; the d
         // The servo goes on within its tolerance: what comes back is compared with what is at rest.
         await until(driver, 'state.servo.status === "reached" && state.servo.joint_velocities.every((rate) => rate === 0)');
         const { q } = await same(driver, observer);
-        // The driver shall wait until it is told to come back.
+        // The driver waits until it is told to come back.
         await driver.evaluate(() => void (/** @type {any} */ (window).viewer.session.connection.pause = 600));
         await first.stop();
         for (const page of [driver, observer]) await page.getByText("The server has stopped.").waitFor();

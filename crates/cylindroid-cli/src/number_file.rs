@@ -65,12 +65,16 @@ pub fn is_arrow(path: &Path) -> bool {
     ["arrow", "feather", "ipc"].iter().any(|known| ending.eq_ignore_ascii_case(known))
 }
 
-/// True for a Parquet file, by its name or by its beginning.
+/// True for a Parquet file: by its name, or by its beginning where it has no other known one.
 fn is_parquet(path: &Path) -> bool {
+    let has_ending = |known: &[&str]| {
+        path.extension().is_some_and(|e| known.iter().any(|k| e.eq_ignore_ascii_case(k)))
+    };
     let mut beginning = [0; 4];
     // Opening a pipe would wait for its writer.
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"))
-        || fs::metadata(path).is_ok_and(|about| about.is_file())
+    has_ending(&["parquet"])
+        || !has_ending(&["csv", "json"])
+            && fs::metadata(path).is_ok_and(|about| about.is_file())
             && File::open(path).and_then(|mut file| file.read_exact(&mut beginning)).is_ok()
             && beginning == *b"PAR1"
 }
@@ -87,8 +91,9 @@ fn table(path: &Path) -> Result<Table> {
     if is_arrow(path) && path.exists() {
         let (from, to) = (path.to_string_lossy(), path.with_extension("parquet"));
         let message = format!(
-            "it is an Arrow file, which cy.sweep(configurations=...) reads in Python; elsewhere convert \
-             it: pyarrow.parquet.write_table(pyarrow.feather.read_table({from:?}), {:?})",
+            "it is an Arrow file; convert it: \
+             pyarrow.parquet.write_table(pyarrow.ipc.open_file({from:?}).read_all(), {:?}), or give \
+             it to cy.sweep(configurations=...) in Python",
             to.to_string_lossy()
         );
         return Err(cannot_read(path, &message));

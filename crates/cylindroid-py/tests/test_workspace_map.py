@@ -53,10 +53,14 @@ def test_threads_change_nothing(found):
 def test_interrupts_end_a_map():
     """Soon, not after a minute."""
     over = {"x": (-1.03, 3.01, 900), "y": (-2.51, 2.57, 900)}
-    threading.Timer(1.0, signal.raise_signal, [signal.SIGINT]).start()
+    timer = threading.Timer(1.0, signal.raise_signal, [signal.SIGINT])
     began = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        cy.workspace_map(cy.load("five-bar"), over)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            cy.workspace_map(cy.load("five-bar"), over, threads=1)
+    finally:
+        timer.cancel()
     assert time.monotonic() - began < 30
 
 

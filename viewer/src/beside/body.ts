@@ -11,6 +11,7 @@ export class Body {
   readonly group = new Group();
   readonly robot: Robot;
   private readonly paints = new Map<Mesh, Material | Material[]>();
+  private built: Scene | null = null;
   private bodies = "";
   private isTransparent = false;
 
@@ -20,6 +21,8 @@ export class Body {
   }
 
   build(scene: Scene): void {
+    if (scene === this.built) return;
+    this.built = scene;
     const bodies = JSON.stringify([scene.name, scene.links, scene.joints, scene.loops, scene.contacts]);
     if (bodies === this.bodies) return;
     this.bodies = bodies;

@@ -27,8 +27,6 @@ type Told = {
   recorded: () => void;
   remove: () => void;
 };
-/** A recording that goes on, and since when (ms). */
-export type Recorder = { recording: Recording; since: number };
 
 /** What moves its joints. */
 const MOVES: readonly ToServer["type"][] = ["joint", "actuated", "null_space"];
@@ -50,9 +48,14 @@ export class Companion {
   /** True until the first scene of a connection. */
   private isFresh = true;
   private begun: number | null = null;
-  /** The session that was lost, if this page moved its joints. */
+  /** Nobody drives it. */
+  private isFree = false;
+  /** This page restores the session of the first model, and this one with it. */
+  private bringsBack = false;
+  /** The session that was lost. */
   private last: { begun: number | null; scene: Scene; q: number[] } | null = null;
-  private recorder: Recorder | null = null;
+  /** That of the first model, which goes on. */
+  private recording: Recording | null = null;
   /** What is shown in place of the model as it is. */
   private past: Past | null = null;
   private isRestoring = false;
@@ -79,18 +82,18 @@ export class Companion {
     session.on("state", (state) => this.place(state));
     session.on("raw", (raw) => this.take(raw));
     session.on("sending", ({ type }) => MOVES.includes(type) && !this.isRestoring && tell.acted());
-    session.on("failure", ({ message, place }) => place !== "model" && tell.say(message, true));
+    session.on("failure", ({ message, place }) => !["model", "session"].includes(place) && tell.say(message, true));
     session.on("link", ({ link }) => link === "lost" && this.lose());
-    session.on("about", ({ begun }) => {
-      this.begun = begun;
+    session.on("about", ({ begun, driver }) => {
+      [this.begun, this.isFree] = [begun, driver === "nobody"];
       if (this.isFresh) this.drive(this.drives);
       this.restore();
     });
     this.unfollow = model === null ? () => undefined : models.follow(session, model, {
-      opens: () => this.drives,
-      failed: (words) => {
+      opens: (isKept) => this.drives || (isKept && this.isFree),
+      failed: (words, isKept) => {
         tell.say(words, true);
-        tell.remove();
+        if (!isKept) tell.remove();
       },
     });
     this.joints.panel.onToggle(() => session.state && !this.past && this.joints.show(session.state));
@@ -127,16 +130,20 @@ export class Companion {
   /** Who moves the first model moves this one. */
   drive(on: boolean): void {
     this.drives = on;
-    // Others have moved it meanwhile.
-    if (!on) this.last = null;
     const { about } = this.session;
     if (about && (about.driver === "you") !== on) this.session.send({ type: "drive", on });
   }
 
+  /** Its session is that of a new server: it gets the joints of the one that was lost. */
+  bringBack(): void {
+    this.bringsBack = true;
+    this.restore();
+  }
+
   /** Records what comes from now on, or no longer. */
-  record(recorder: Recorder | null): void {
-    this.recorder = recorder;
-    this.session.eager = recorder !== null;
+  record(recording: Recording | null): void {
+    this.recording = recording;
+    this.session.eager = recording !== null;
     const { scene, state, age } = this.session;
     if (scene && state) this.begin(scene, state, age);
   }
@@ -149,15 +156,17 @@ export class Companion {
       if (!was) return;
       this.group.visible = true;
       this.body.stand(this.pose, this.ghost.checked);
-      if (this.session.state) this.draw(this.session.state);
+      const { scene, state } = this.session;
+      if (scene && state) this.draw(scene, state);
       return;
     }
     const stands = past.scene.beside.find(({ session }) => session === this.name);
-    const state = past.recording.beside.get(this.name)?.stateBefore(past.time);
+    const track = past.recording.beside.get(this.name);
+    const state = track?.stateBefore(past.time);
     this.group.visible = Boolean(stands && state);
-    if (!stands || !state) return;
+    if (!stands || !track || !state) return;
     this.body.stand(stands, stands.transparent);
-    this.draw(state);
+    this.draw(track.sceneAt(track.columns.indexAt(past.time)), state);
   }
 
   private build(scene: Scene): void {
@@ -176,13 +185,15 @@ export class Companion {
       this.stand(this.tell.place(this.robot.box()), this.ghost.checked);
       this.tell.moved();
     }
+    const { scene } = this.session;
     if (this.past) this.show(this.past);
-    else this.draw(state);
+    else if (scene) this.draw(scene, state);
   }
 
-  private draw(state: State): void {
+  private draw(scene: Scene, state: State): void {
+    this.body.build(scene);
     this.robot.place(state);
-    this.joints.show(state);
+    if (this.session.scene && areJointsSame(scene, this.session.scene)) this.joints.show(state);
     this.tell.changed();
   }
 
@@ -193,53 +204,71 @@ export class Companion {
   }
 
   private lose(): void {
+    this.track?.lose();
     if (this.isFresh) return;
-    this.isFresh = true;
+    [this.isFresh, this.bringsBack] = [true, false];
     const { scene, state } = this.session;
-    if (this.drives && scene && state) this.last = { begun: this.begun, scene, q: state.q };
+    if (scene && state) this.last = { begun: this.begun, scene, q: state.q };
   }
 
-  /** A new session has the joints of the one that was lost. */
+  /** A new session has the joints of the one that was lost, unless another page has moved them. */
   private restore(): void {
     const { last, session } = this;
     const { scene, about } = session;
-    if (!last || this.isFresh || !scene || !about || !session.drives) return;
+    if (!last || this.isFresh || !scene || !about) return;
+    const isNew = about.begun !== last.begun && scene.name === last.scene.name && scene.coordinates.length === last.q.length;
+    if (isNew && !session.drives && (this.drives || about.driver === "nobody")) {
+      // It goes on once this page drives, which may be for this alone.
+      if (about.driver === "nobody" && this.bringsBack) session.send({ type: "drive", on: true });
+      return;
+    }
     this.last = null;
-    if (about.begun === last.begun || scene.name !== last.scene.name || scene.coordinates.length !== last.q.length) return;
+    if (!isNew || !session.drives) return;
     const names = actuated(last.scene);
     this.isRestoring = true;
     if (String(names) !== String(actuated(scene))) session.send({ type: "actuated", names });
     session.send({ type: "configuration", q: last.q });
     this.isRestoring = false;
+    if (!this.drives) session.send({ type: "drive", on: false });
   }
 
   private begin(scene: Scene, state: State, age: number): void {
-    if (!this.recorder) return;
-    const { recording, since } = this.recorder;
+    if (!this.recording) return;
     const track = new Recording(scene);
-    track.begin(state, age, (performance.now() - since) / 1000);
-    recording.beside.set(this.name, track);
+    track.begin(state, age, this.recording.now);
+    this.recording.beside.set(this.name, track);
+  }
+
+  /** What is recorded of this model. */
+  private get track(): Recording | undefined {
+    return this.recording?.beside.get(this.name);
   }
 
   /** What comes is of this scene; a recording of other joints ends. */
   private changeTrack(scene: Scene): void {
-    const tracks = this.recorder?.recording.beside;
-    const track = tracks?.get(this.name);
-    if (!tracks || !track) return;
-    const joints = (of: Scene): string => String(of.coordinates.map(({ name }) => name));
-    if (joints(scene) === joints(track.scene)) track.changeScene(scene);
-    else tracks.delete(this.name);
+    const { track } = this;
+    if (!track) return;
+    if (areJointsSame(scene, track.scene)) {
+      track.changeScene(scene);
+      return;
+    }
+    this.record(null);
+    this.tell.say(`${scene.name}, beside the first model, has other joints now: its recording has ended.`);
   }
 
   private take(raw: string): void {
-    const { scene } = this.session;
-    if (!this.recorder || !scene) return;
-    const track = this.recorder.recording.beside.get(this.name);
+    const { track, session: { scene } } = this;
+    if (!this.recording || !scene) return;
     const state = JSON.parse(raw) as State;
     if (track) track.takeLive(raw, state);
     else this.begin(scene, state, 0);
     this.tell.recorded();
   }
+}
+
+function areJointsSame(one: Scene, other: Scene): boolean {
+  const joints = ({ coordinates }: Scene): string => String(coordinates.map(({ name }) => name));
+  return one === other || joints(one) === joints(other);
 }
 
 function actuated(scene: Scene): string[] {

@@ -9,7 +9,8 @@ import { panel } from "../panels/panel";
 import type { ModelBeside, Pose, Scene } from "../protocol";
 import type { Session } from "../session";
 import type { Past, Recording } from "../timeline/recording";
-import { Companion, type Recorder } from "./companion";
+import { Companion } from "./companion";
+import { Recorded } from "./recorded";
 
 const PARAMETER = "beside";
 /** In the address, for the model of the command. */
@@ -39,19 +40,24 @@ export class Companions {
   private readonly list = h("div", {});
   private count = 0;
   /** Those of the address, until the first scene. */
-  private asked = new URL(location.href).searchParams.getAll(PARAMETER);
+  private asked = new URL(location.href).searchParams.getAll(PARAMETER).slice(0, MOST);
   /** What was sent; scenes before the answer do not have it. */
   private sent: { id: number; models: ModelBeside[] } | null = null;
-  private recorder: Recorder | null = null;
+  private recording: Recording | null = null;
   private past: Past | null = null;
+  /** Those of a recording that are shown no longer. */
+  private readonly gone: Recorded;
 
   constructor(private readonly main: Session, private readonly models: KeptModels, private readonly tell: Told) {
     this.panel.body.append(h("p", { class: "note" }, "Each of these models has a session of its own here. Open it in a window of its own to drag its target."), this.list);
     this.panel.element.hidden = true;
+    this.gone = new Recorded(tell.changed, (session) => this.all.has(session));
+    this.group.add(this.gone.group);
     main.on("about", () => {
       const { drives } = main;
       this.panel.body.inert = !drives;
-      if (!drives) this.sent = null;
+      // What has no place yet gets none.
+      if (!drives) this.dropAll(({ isPlaced }) => !isPlaced);
       for (const companion of this.all.values()) companion.drive(drives);
     });
     main.on("link", ({ link }) => {
@@ -82,6 +88,7 @@ export class Companions {
 
   /** A new session, which this page drives: it gets the models that the page shows or its address names. */
   restore(): void {
+    for (const companion of this.all.values()) companion.bringBack();
     for (const id of this.asked.splice(0)) this.begin(newName(), id === COMMAND ? null : id);
     if ([...this.all.values()].some(({ isPlaced }) => isPlaced)) this.send();
   }
@@ -89,10 +96,11 @@ export class Companions {
   /** Those of the session; one that this page has added and not placed yet is not among them. */
   build(scene: Scene): void {
     this.asked = [];
-    if (this.sent !== null && !areSame(this.sent.models, scene.beside)) return;
+    // What was sent by a page that drives no longer is refused, or others have changed it since.
+    if (this.sent !== null && this.main.drives && !areSame(this.sent.models, scene.beside)) return;
     this.sent = null;
     const names = scene.beside.map(({ session }) => session);
-    for (const companion of this.all.values()) if (companion.isPlaced && !names.includes(companion.name)) this.drop(companion);
+    this.dropAll(({ isPlaced, name }) => isPlaced && !names.includes(name));
     for (const { session, model, transparent, ...pose } of scene.beside) (this.all.get(session) ?? this.begin(session, model)).stand(pose, transparent);
     this.show();
   }
@@ -100,7 +108,7 @@ export class Companions {
   /** With the models in it. */
   within(box: Box3): Box3 {
     for (const { group } of this.all.values()) if (group.visible) box.union(new Box3().setFromObject(group));
-    return box;
+    return this.gone.within(box);
   }
 
   /** Before each drawing. */
@@ -110,14 +118,15 @@ export class Companions {
 
   /** Records them with the first model, or no longer. */
   record(recording: Recording | null): void {
-    this.recorder = recording && { recording, since: performance.now() };
-    for (const companion of this.all.values()) companion.record(this.recorder);
+    this.recording = recording;
+    for (const companion of this.all.values()) companion.record(recording);
   }
 
   /** As they were in a recording, or as they are. */
   showPast(past: Past | null): void {
     this.past = past;
     for (const companion of this.all.values()) companion.show(past);
+    this.gone.show(past);
     this.tell.changed();
   }
 
@@ -138,15 +147,21 @@ export class Companions {
     this.all.set(name, companion);
     this.group.add(companion.group);
     this.list.append(companion.element);
-    companion.record(this.recorder);
-    companion.show(this.past);
+    companion.record(this.recording);
+    this.showPast(this.past);
     return companion;
+  }
+
+  private dropAll(which: (companion: Companion) => boolean): void {
+    const dropped = [...this.all.values()].filter(which);
+    dropped.forEach((companion) => this.drop(companion));
+    if (dropped.length > 0) this.show();
   }
 
   private drop(companion: Companion): void {
     companion.close();
     this.all.delete(companion.name);
-    this.tell.changed();
+    this.showPast(this.past);
   }
 
   /** Tells the session of those that have their places. */

@@ -8,8 +8,8 @@ import { meshesOf, nameOf } from "./bodies";
 /** Vertices closer than this share of a body are one, if their normals are (one part in 100 000 is not seen). */
 const SAME = 1e-5;
 
-/** Scenes whose meshes have numbers in place of addresses, and the bodies of these numbers. */
-export async function collected(scenes: Scene[]): Promise<{ scenes: Scene[]; bodies: Blob }> {
+/** Scenes whose meshes have numbers in place of addresses, and the bodies of these numbers; `sessions` of models beside have numbers, too. */
+export async function collected(scenes: Scene[], sessions: Map<string, string>): Promise<{ scenes: Scene[]; bodies: Blob }> {
   const { GLTFExporter } = await import("three/addons/exporters/GLTFExporter.js");
   const numbers = new Map<string, number>();
   const all = new Group();
@@ -29,7 +29,7 @@ export async function collected(scenes: Scene[]): Promise<{ scenes: Scene[]; bod
     }
     visual.url = String(number);
   };
-  const copies = scenes.map(bare);
+  const copies = scenes.map((scene) => bare(scene, sessions));
   for (const visual of copies.flatMap(meshesOf)) if (visual.url !== null) await numbered(visual);
   const file = await new GLTFExporter().parseAsync(all, { binary: true });
   return { scenes: copies, bodies: new Blob([file as ArrayBuffer]) };
@@ -51,7 +51,11 @@ function indexed(geometry: BufferGeometry): BufferGeometry {
   return mergeVertices(geometry, SAME * (geometry.boundingSphere?.radius ?? 1));
 }
 
-/** A copy without the shapes of collisions, which are not shown. */
-function bare(scene: Scene): Scene {
-  return structuredClone({ ...scene, links: scene.links.map((link) => ({ ...link, collisions: [] })) });
+/** A copy without what is not shown: shapes of collisions, and models beside the first of which there are no states. */
+function bare(scene: Scene, sessions: Map<string, string>): Scene {
+  const beside = scene.beside.flatMap((one) => {
+    const session = sessions.get(one.session);
+    return session === undefined ? [] : [{ ...one, model: null, session }];
+  });
+  return structuredClone({ ...scene, beside, links: scene.links.map((link) => ({ ...link, collisions: [] })) });
 }

@@ -5,7 +5,7 @@ import type { OverlayName, Scene } from "../protocol";
 export type Look = { camera: number[]; orthographic: boolean; overlays: OverlayName[] };
 /** Times of the states of a model, and its scenes, each from its first state on. */
 export type Track = { times: number[]; scenes: { from: number; scene: Scene }[] };
-/** With the models beside the first, by their sessions; their states follow those of the first. */
+/** With the models beside the first, whose sessions are numbers; their states follow those of the first. */
 export type Head = Look & Track & { beside: (Track & { session: string })[] };
 
 /** Elements of the page that hold them. */

@@ -1,5 +1,6 @@
 /** A recording that plays by itself: the page of one HTML file. It has no server, and computes nothing. */
 import { Sphere } from "three";
+import { Recorded } from "../beside/recorded";
 import { isTyping } from "../controls/tools";
 import { h } from "../dom";
 import { count, fixed } from "../format";
@@ -23,7 +24,6 @@ import { Trail } from "../timeline/trail";
 import { UnitControls } from "../controls/units";
 import { inUnits } from "../units";
 import { offer } from "./bodies";
-import { Beside } from "./beside";
 import { BODIES, RECORDING, unpacked, type Head, type Track } from "./film";
 import "../styles/film.css";
 
@@ -73,7 +73,7 @@ function show(recording: Recording, head: Head): void {
   const trail = new Trail();
   const [pose, singular] = [posePanel(), singularPanel(() => redraw())];
   page.right.append(pose.element, singular.element, new UnitControls().panel.element);
-  const beside = new Beside(recording, () => stage.invalidate());
+  const beside = new Recorded(() => stage.invalidate());
   stage.scene.add(robot.group, overlays.group, obstacles.group, trail.group, beside.group);
 
   const player = new Player(() => move(), () => dock.playing(player.playing));

@@ -9,14 +9,16 @@ const POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsaf
 export async function filmPage(recording: Recording, look: Look): Promise<Blob> {
   const { name } = recording.scene;
   const [script, styles] = await Promise.all(["film.js", "film.css"].map(part));
-  const beside = [...recording.beside];
+  const beside = recording.tracks();
   const all = [recording, ...beside.map(([, one]) => one)];
-  const { scenes, bodies } = await collected(all.flatMap((one) => one.parts().map(({ scene }) => scene)));
+  // Names of sessions, and ids of models, are of the server.
+  const numbers = new Map(beside.map(([session], i) => [session, String(i + 1)]));
+  const { scenes, bodies } = await collected(all.flatMap((one) => one.parts().map(({ scene }) => scene)), numbers);
   const track = (one: Recording): Track => ({
     times: [...one.columns.time.view()],
     scenes: one.parts().map(({ from, scene }) => ({ from, scene: scenes.shift() ?? scene })),
   });
-  const head: Head = { ...look, ...track(recording), beside: beside.map(([session, one]) => ({ session, ...track(one) })) };
+  const head: Head = { ...look, ...track(recording), beside: beside.map(([session, one]) => ({ session: numbers.get(session) ?? "", ...track(one) })) };
   const states = await packed(new Blob([JSON.stringify(head), ...all.flatMap((one) => ["\n", one.lines()])]));
   const data = (id: string, text: string): string => `<script type="text/plain" id="${id}">${text}</script>\n`;
   return new Blob([

@@ -7,15 +7,17 @@ import type { Session } from "../session";
 import { sentence } from "./refusal";
 
 type Told = {
-  /** False for an observer: the page that drives opens the model again. */
-  opens: () => boolean;
-  /** The model is not open and will not be; said once. */
-  failed: (words: string) => void;
+  /** False for an observer: the page that drives opens the model again. `isKept`: this page has its request. */
+  opens: (isKept: boolean) => boolean;
+  /** The model is not open on this server and will not be; said once. `isKept`: the next server is asked again. */
+  failed: (words: string, isKept: boolean) => void;
 };
 
 export class KeptModels {
   private readonly requests = new Map<string, Promise<Blob>>();
   private readonly openings = new Map<string, Promise<string | null>>();
+  /** Why the server that runs now has refused a model; the next one may take it. */
+  private readonly refused = new Map<string, string>();
   /** Sessions of each model. */
   private readonly sessions = new Map<string, number>();
 
@@ -23,7 +25,7 @@ export class KeptModels {
   follow(session: Session, id: string, { opens, failed }: Told): () => void {
     let [isOpened, isTold, isOver] = [false, false, false];
     const fail = (words: string): void => {
-      if (!isTold) failed(words);
+      if (!isTold) failed(words, this.requests.has(id));
       isTold = true;
     };
     const keep = (): void => {
@@ -35,8 +37,13 @@ export class KeptModels {
       isOpened = isTold = false;
       keep();
     });
+    session.on("link", ({ wasOpen }) => {
+      if (wasOpen) return;
+      isOpened = isTold = false;
+      this.refused.delete(id);
+    });
     session.on("failure", ({ place, message }) => {
-      if (place !== "model" || !opens()) return;
+      if (place !== "model" || !opens(this.requests.has(id))) return;
       // What was opened and is not there would be opened for ever.
       if (isOpened) {
         fail(message);
@@ -53,7 +60,9 @@ export class KeptModels {
       isOver = true;
       const left = (this.sessions.get(id) ?? 1) - 1;
       this.sessions.set(id, left);
-      if (left === 0) this.requests.delete(id);
+      if (left > 0) return;
+      this.requests.delete(id);
+      this.refused.delete(id);
     };
   }
 
@@ -76,12 +85,14 @@ export class KeptModels {
   private async post(id: string, unknown: string): Promise<string | null> {
     const request = this.requests.get(id);
     if (!request) return unknown;
+    const refused = this.refused.get(id);
+    if (refused !== undefined) return refused;
     const answer = await fetch("./models", { method: "POST", body: await request });
     if (answer.ok) return null;
-    // It would be refused again.
-    this.requests.delete(id);
     const isJson = answer.headers.get("content-type")?.includes("json");
-    return `The model could not be opened again. ${isJson ? sentence((await answer.json()) as Refusal) : await answer.text()}`;
+    const why = `The model could not be opened again. ${isJson ? sentence((await answer.json()) as Refusal) : await answer.text()}`;
+    this.refused.set(id, why);
+    return why;
   }
 }
 

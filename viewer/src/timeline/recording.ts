@@ -19,8 +19,10 @@ export class Recording {
   private readonly raws: string[] = [];
   /** Each from its first state on. */
   private readonly scenes: { from: number; scene: Scene }[] = [];
-  /** Of the session at time 0 (s). */
+  /** Of the session at time 0 (s); null until a state says it. */
   private began: number | null = null;
+  /** Of the page at time 0 (ms). */
+  private since = 0;
 
   /** `file`: the name of the file that it was read from. */
   constructor(scene: Scene, readonly file: string | null = null) {
@@ -52,16 +54,32 @@ export class Recording {
     this.scenes.push({ from: this.length, scene });
   }
 
+  /** Those of which there are states. */
+  tracks(): [string, Recording][] {
+    return [...this.beside].filter(([, { length }]) => length > 0);
+  }
+
+  /** Since time 0 (s). */
+  get now(): number {
+    return (performance.now() - this.since) / 1000;
+  }
+
   /** The first state, which was computed `age` ago (s): it is at this time, and what follows counts from now. */
   begin(state: State, age: number, time = 0): void {
+    this.since = performance.now() - 1000 * time;
     this.began = state.clock + age - time;
     this.take(time, JSON.stringify(state), state);
   }
 
-  /** A state of the session, as text: when it was computed counts, not when it came. */
+  /** The line was lost: the clock of a session that begins anew does, too, and the clock of the page goes on. */
+  lose(): void {
+    this.began = null;
+  }
+
+  /** A state of the session, as text: when it was computed counts; after a lost line, when the first one came. */
   takeLive(raw: string, state = JSON.parse(raw) as State): void {
-    this.began ??= state.clock;
-    // The clock of a server that was restarted begins anew; no two samples are at one time.
+    this.began ??= state.clock - this.now;
+    // No two samples are at one time.
     this.began = Math.min(this.began, state.clock - this.duration - LEAST);
     this.take(state.clock - this.began, raw, state);
   }
@@ -106,7 +124,7 @@ export class Recording {
   }
 
   json(): Blob {
-    const beside = [...this.beside].flatMap(([session, one], i) => [i === 0 ? ',"beside":[\n' : ",\n", ...one.text({ session }), "}"]);
+    const beside = this.tracks().flatMap(([session, one], i) => [i === 0 ? ',"beside":[\n' : ",\n", ...one.text({ session }), "}"]);
     return new Blob([...this.text({}), ...beside, beside.length > 0 ? "]}\n" : "}\n"], { type: "application/json" });
   }
 

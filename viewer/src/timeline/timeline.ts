@@ -81,6 +81,7 @@ export class Timeline {
     this.elsewhere = new Elsewhere(session);
     session.on("raw", (raw) => this.take(raw));
     session.on("scene", (scene) => this.takeScene(scene));
+    session.on("link", ({ link }) => link === "lost" && this.recording?.lose());
     session.on("sending", (message) => this.takeOver(message));
     this.exists(false);
   }
@@ -290,16 +291,21 @@ export class Timeline {
     const { recording } = this;
     if (!this.records || !recording) return;
     recording.takeLive(raw);
-    if (recording.isFull) {
-      this.stop();
-      this.tell.say(`The recording has ${MOST} states and has stopped; save it, or record again.`);
-    }
+    if (recording.isFull) this.stopFull();
     this.grow();
+  }
+
+  private stopFull(): void {
+    this.stop();
+    this.tell.say(`The recording has ${MOST} states and has stopped; save it, or record again.`);
   }
 
   /** What stands beside the robot has moved. */
   growBeside(): void {
-    if (this.records) this.grow();
+    const { recording } = this;
+    if (!this.records || !recording) return;
+    if (recording.tracks().some(([, { isFull }]) => isFull)) this.stopFull();
+    this.grow();
   }
 
   /** The recording has become longer. */

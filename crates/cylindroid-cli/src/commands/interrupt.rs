@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// True from the first Ctrl-C on.
+use crate::exit::Exit;
+
+/// True from the first Ctrl-C on; the second one ends the process.
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
@@ -30,6 +32,10 @@ impl Interrupt {
                     }
                 }
                 own.store(true, Ordering::Relaxed);
+                // Who presses it again does not want to wait.
+                if tokio::signal::ctrl_c().await.is_ok() {
+                    std::process::exit(i32::from(Exit::INTERRUPTED.code()));
+                }
             });
         });
         let _ = receiver.recv();

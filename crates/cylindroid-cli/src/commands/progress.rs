@@ -12,20 +12,21 @@ use crate::exit::Exit;
 /// A line with what is counted, which disappears at the end.
 pub(crate) struct Bar {
     bar: ProgressBar,
-    unit: Cell<&'static str>,
+    /// The unit, and how many there are.
+    counted: Cell<(&'static str, u64)>,
     computed: Cell<u64>,
 }
 
 impl Bar {
     pub(crate) fn new() -> Self {
         let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr());
-        Self { bar, unit: Cell::new(""), computed: Cell::new(0) }
+        Self { bar, counted: Cell::new(("", 0)), computed: Cell::new(0) }
     }
 
     pub(crate) fn show(&self, progress: &Progress) {
-        let last = self.unit.replace(progress.unit);
-        let begins = last != progress.unit;
-        if begins {
+        let counted = (progress.unit, progress.rows);
+        let last = self.counted.replace(counted);
+        if last.0 != progress.unit {
             let counts = format!("{{human_pos}} of {{human_len}} {}", progress.unit);
             let template = format!("{{wide_bar}} {counts}, {{per_sec}}, {{eta}} left");
             if let Ok(style) = ProgressStyle::with_template(&template) {
@@ -36,7 +37,7 @@ impl Bar {
         self.bar.set_position(progress.done);
         // Neither rows of earlier runs nor what was counted before belong to the rate.
         let is_idle = self.computed.replace(progress.computed) == 0 && progress.computed == 0;
-        if is_idle || (begins && !last.is_empty()) {
+        if is_idle || last != counted {
             self.bar.reset_eta();
         }
     }

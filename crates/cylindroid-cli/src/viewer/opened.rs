@@ -4,6 +4,7 @@
 //! The id of a model is random, so that a server that was restarted has no other model of this id.
 //! Pages keep the request that opened it, and send it again.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -193,7 +194,7 @@ pub(super) fn offers() -> Vec<Offer> {
     catalogue::entries().into_iter().map(offer).collect()
 }
 
-/// The parts of a request; every path is a plain one below a folder.
+/// The parts of a request; every path is a plain one below a folder, and no two are the same.
 fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
     let refuse = |message: String| Refusal::new(message, "see docs/viewer.md");
     let end = body.iter().position(|byte| *byte == b'\n').unwrap_or(body.len());
@@ -210,6 +211,7 @@ fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
         return Err(Refusal::new(format!("{count} files are more than {MOST_FILES}"), help));
     }
     let mut files = Vec::with_capacity(head.files.len());
+    let mut paths = BTreeSet::new();
     for (name, size) in &head.files {
         let path = Path::new(name);
         let is_plain = |c: Component<'_>| match c {
@@ -218,6 +220,10 @@ fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
         };
         if name.is_empty() || name.contains(['\\', '\0']) || !path.components().all(is_plain) {
             return Err(refuse(format!("'{name}' is not a path below the folder of a model")));
+        }
+        // Paths are compared by their parts: a//b is a/b.
+        if !paths.insert(path) {
+            return Err(refuse(format!("'{name}' is twice among the files")));
         }
         let Some((bytes, more)) = rest.split_at_checked(*size) else {
             return Err(refuse(format!("'{name}' has fewer bytes than the {size} announced")));

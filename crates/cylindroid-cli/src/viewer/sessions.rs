@@ -13,8 +13,8 @@ use super::session::Session;
 use super::shared_session::SharedSession;
 use super::start::Start;
 
-/// Maximum number of concurrent clients.
-const MOST_CLIENTS: usize = 100;
+/// Maximum number of concurrent clients: 33 pages with eight models beside the first have 297.
+const MOST_CLIENTS: usize = 300;
 
 /// The sessions of a model.
 #[derive(Debug, Clone)]

@@ -97,7 +97,7 @@ fn configurations_of_files() {
     fs::write(&arrow, "ARROW1").unwrap();
     for command in ["sweep", "manipulability"] {
         let message = refused(&[command, "panda", "--configurations", &arrow]);
-        for part in ["cy.sweep", "pyarrow.feather.read_table", "samples.parquet"] {
+        for part in ["cy.sweep", "pyarrow.ipc.open_file", "samples.parquet"] {
             assert!(message.contains(part), "{message}");
         }
     }

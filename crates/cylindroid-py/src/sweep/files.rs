@@ -22,7 +22,7 @@ pub(super) fn configurations(robot: &PyMechanism, given: &Bound<'_, PyAny>) -> R
     }
     let coordinates = robot.inner.coordinates();
     let names: Vec<&str> = coordinates.iter().map(|c| c.name.as_str()).collect();
-    Ok(numbers::named_configurations(&path, &names)?)
+    Ok(given.py().detach(|| numbers::named_configurations(&path, &names))?)
 }
 
 fn of_columns(robot: &PyMechanism, given: &Bound<'_, PyAny>) -> Result<Vec<f64>> {
@@ -33,7 +33,8 @@ fn of_columns(robot: &PyMechanism, given: &Bound<'_, PyAny>) -> Result<Vec<f64>>
 /// Poses of an array or of a file.
 pub(super) fn poses(given: &Bound<'_, PyAny>, task: Task) -> Result<Source> {
     if let Ok(path) = given.extract::<PathBuf>() {
-        let rows = numbers::named_columns(&path, Source::pose_columns(task))?;
+        let columns = Source::pose_columns(task);
+        let rows = given.py().detach(|| numbers::named_columns(&path, columns))?;
         return Ok(Source::poses(&rows, task)?);
     }
     let poses: Numbers<'_> = entry("poses", given)?;

@@ -28,6 +28,10 @@ impl Watch {
         !self.stopped.load(Ordering::Relaxed)
     }
 
+    fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
     /// Asks the observer whether to go on; one that has said no is not asked again.
     fn asked(
         &self,
@@ -36,7 +40,9 @@ impl Watch {
     ) -> bool {
         let done = self.done.load(Ordering::Relaxed);
         let go_on = self.goes_on() && observe(&Progress { unit, rows, done, computed: done });
-        self.stopped.store(!go_on, Ordering::Relaxed);
+        if !go_on {
+            self.stop();
+        }
         go_on
     }
 }
@@ -82,7 +88,8 @@ impl<'a> Workers<'a> {
         run_parts(
             count,
             self.threads,
-            |memory: &mut M, part| work(memory, part, watch),
+            // After an error nobody needs the other parts.
+            |memory: &mut M, part| work(memory, part, watch).inspect_err(|_| watch.stop()),
             |part, result| all[part] = Some(result),
             || Ok(watch.asked(counted, observe)),
         )?;

@@ -1,7 +1,12 @@
 //! Random robots: joints of all kinds of one coordinate, ordinary and odd limits, branches, masses
 //! and shapes; and the catalogue.
 
-use cylindroid::model::{Collision, Geometry, Inertial, JointKind, JointSpec, Limits, Link, Mimic};
+use std::f64::consts::PI;
+
+use cylindroid::model::{
+    Collision, Dimension, Geometry, Inertial, JointKind, JointSpec, Limits, Link, LoopJointSpec,
+    Mimic,
+};
 use cylindroid::spatial::{Mat3, Rotation};
 use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
@@ -179,6 +184,55 @@ pub(crate) fn robot(random: &mut Random<'_>, with_shapes: bool) -> Mechanism {
     }
     builder.frame("tip", &format!("l{n}"), random.pose(0.2)).tool("tip");
     builder.build().unwrap_or_else(|_| catalogue::load("ur5e").unwrap())
+}
+
+/// A five-bar with shapes on all links: two legs, actuated at the base, meet in a hinge.
+pub(crate) fn five_bar(random: &mut Random<'_>) -> Mechanism {
+    let mut builder = Mechanism::builder("five-bar");
+    let width = random.within(0.3, 1.2);
+    let meeting = Vec3::new(random.within(0.2, 0.8) * width, random.within(0.5, 1.0), 0.0);
+    let (mut home, mut ends) = (Vec::new(), [Pose::IDENTITY; 2]);
+    for (leg, x, side) in [("a", 0.0, 1.0), ("b", width, -1.0)] {
+        let base = Vec3::new(x, 0.0, 0.0);
+        let way = meeting - base;
+        let far = way.norm();
+        let lower = random.within(0.4, 0.8);
+        let upper = random.within((far - lower).abs() + 0.1, far + lower - 0.1);
+        // The triangle of the leg.
+        let shoulder = ((far * far + lower * lower - upper * upper) / (2.0 * far * lower)).acos();
+        let elbow = ((lower * lower + upper * upper - far * far) / (2.0 * lower * upper)).acos();
+        home.extend([way.y.atan2(way.x) + side * shoulder, side * (elbow - PI)]);
+        let links = [format!("{leg}1"), format!("{leg}2")];
+        for (i, (length, at)) in [(lower, base), (upper, Vec3::X * lower)].into_iter().enumerate() {
+            let parent = if i == 0 { "base" } else { &links[0] };
+            let (velocity, acceleration) = (random.power(-0.3, 0.7), random.power(0.0, 2.0));
+            let limits = Limits { velocity, acceleration, ..Limits::NONE };
+            builder.joint(JointSpec {
+                parent_from_joint: Pose::from_translation(at),
+                limits: if i == 0 { limits } else { Limits::NONE },
+                actuated: i == 0,
+                ..JointSpec::new(&format!("q_{}", links[i]), JointKind::Revolute, parent, &links[i])
+            });
+            let bar = Vec3::new(random.within(0.5, 0.8) * length, 0.04, 0.04);
+            builder.link(Link {
+                collisions: vec![Collision {
+                    geometry: Geometry::Box { size: bar },
+                    link_from_shape: Pose::from_translation(Vec3::X * (0.5 * length)),
+                    ..Collision::default()
+                }],
+                ..Link::named(&links[i])
+            });
+            ends[usize::from(leg == "b")] = Pose::from_translation(Vec3::X * length);
+        }
+    }
+    builder.loop_joint(LoopJointSpec {
+        link_a_from_joint: ends[0],
+        link_b_from_joint: ends[1],
+        ..LoopJointSpec::new("meeting", JointKind::Revolute, "a2", "b2")
+    });
+    builder.frame("tip", "a2", ends[0]).tool("tip").reference("tip");
+    builder.dimension(Dimension::Planar).home(&home);
+    builder.build().unwrap()
 }
 
 /// A model of the catalogue, serial or with loops.

@@ -7,9 +7,9 @@ use cylindroid::control::{
 };
 use cylindroid::inverse::Method;
 use cylindroid::model::{Geometry, JointLimits};
-use cylindroid::{Mechanism, Pose, Servo, ServoOptions};
+use cylindroid::{Mechanism, Pose, Servo, ServoOptions, State};
 
-use crate::robots::{ClampTo, Random, of_catalogue, robot};
+use crate::robots::{ClampTo, Random, five_bar, of_catalogue, robot};
 use crate::watch::{Tally, Watch};
 
 /// Steps of a round; few where a fuzzer chooses them.
@@ -27,11 +27,19 @@ pub(crate) enum Kind {
     Closed,
     Tasks,
     Distances,
+    ClosedDistances,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 6] =
-        [Self::Catalogue, Self::Random, Self::Jerks, Self::Closed, Self::Tasks, Self::Distances];
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Catalogue,
+        Self::Random,
+        Self::Jerks,
+        Self::Closed,
+        Self::Tasks,
+        Self::Distances,
+        Self::ClosedDistances,
+    ];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -41,6 +49,7 @@ impl Kind {
             Self::Closed => "closed chains",
             Self::Tasks => "many tasks",
             Self::Distances => "distances",
+            Self::ClosedDistances => "distances of five-bars",
         }
     }
 
@@ -51,7 +60,8 @@ impl Kind {
             12..15 => Self::Jerks,
             15 => Self::Closed,
             16..18 => Self::Tasks,
-            _ => Self::Distances,
+            18 => Self::Distances,
+            _ => Self::ClosedDistances,
         }
     }
 }
@@ -95,6 +105,7 @@ fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
         Kind::Tasks if random.once_in(5) => closed_tasks(random),
         Kind::Tasks => many_tasks(&robot(random, false), random),
         Kind::Distances => distances(&robot(random, true), random),
+        Kind::ClosedDistances => closed_distances(random),
     };
     tally.rounds = 1;
     tally
@@ -264,26 +275,40 @@ fn many_tasks(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     task_servo(servo, &mut q, &mut watch, random, |_, _| Ok(()))
 }
 
-/// Many tasks of a closed chain: the velocities of its actuated joints have limits.
+/// Many tasks of a closed chain.
 fn closed_tasks(random: &mut Random<'_>) -> Tally {
     let robot = of_catalogue(random, true);
     let mut options = TaskServoOptions::new(&robot);
     options.dt = random.power(-3.5, -2.3);
     options.acceleration = random.power(-1.0, 4.0);
     let mut q = robot.home().to_vec();
+    match TaskServo::new(&robot, tasks(&robot, &q, random), options) {
+        Ok(servo) => closed_servo(servo, &mut q, |_, _| Ok(())),
+        Err(_) => Tally::default(),
+    }
+}
+
+/// Steps of a servo of a closed chain: the velocities of its actuated joints have limits.
+fn closed_servo(
+    mut servo: TaskServo,
+    q: &mut [f64],
+    mut look: impl FnMut(u64, &[f64]) -> Result<(), String>,
+) -> Tally {
+    let robot = servo.mechanism().clone();
     let mut tally = Tally::default();
-    let Ok(mut servo) = TaskServo::new(&robot, tasks(&robot, &q, random), options) else {
-        return tally;
-    };
     for step in 0..STEPS {
         tally.steps += 1;
         // A loop that opened is an error.
-        if servo.step(&q).is_err() {
+        if servo.step(q).is_err() {
             tally.errors += 1;
             return tally;
         }
-        servo.advance(&mut q);
-        closed_step(&robot, servo.joint_velocities(), &q, step, &mut tally);
+        servo.advance(q);
+        closed_step(&robot, servo.joint_velocities(), q, step, &mut tally);
+        if let Err(what) = look(step, q) {
+            tally.violations.push(what);
+            return tally;
+        }
     }
     tally
 }
@@ -327,8 +352,8 @@ fn task_servo(
     tally
 }
 
-/// A robot among obstacles: pairs that start apart stay apart.
-fn distances(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
+/// A robot with up to three obstacles, at most so far above and below the plane x-y.
+fn among_obstacles(robot: &Mechanism, height: f64, random: &mut Random<'_>) -> CollisionModel {
     let options = CollisionOptions { samples: 20, ..CollisionOptions::default() };
     let mut model = CollisionModel::new(robot, &options).unwrap();
     for i in 0..1 + random.below(3) {
@@ -339,47 +364,101 @@ fn distances(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
             2 => Geometry::Cylinder { radius: size, length: size },
             _ => Geometry::Sphere { radius: size },
         };
-        model.add_obstacle(&format!("o{i}"), &geometry, random.pose(1.0)).unwrap();
+        let mut pose = random.pose(1.0);
+        pose.translation.z *= height;
+        model.add_obstacle(&format!("o{i}"), &geometry, pose).unwrap();
     }
-    let gap = 0.005;
-    let mut near: Vec<NearPair> = Vec::new();
-    // A start where all pairs have more than the gap.
-    let mut q = Vec::new();
-    for _ in 0..30 {
-        q = random.configuration(robot);
-        model.near(&robot.state(&q).unwrap(), 0.02, &mut near).unwrap();
-        if near.is_empty() {
-            break;
+    model
+}
+
+/// The least distance that a servo is to keep (m).
+const GAP: f64 = 0.005;
+
+/// Looks at the distances of a motion: pairs that start apart stay apart.
+struct Distances {
+    model: CollisionModel,
+    near: Vec<NearPair>,
+    nearest: f64,
+    below_gap: u64,
+}
+
+impl Distances {
+    fn new(model: CollisionModel) -> Self {
+        Self { model, near: Vec::new(), nearest: f64::INFINITY, below_gap: 0 }
+    }
+
+    /// All pairs have more than the gap.
+    fn is_free(&mut self, state: &State) -> bool {
+        self.model.near(state, 4.0 * GAP, &mut self.near).unwrap();
+        self.near.is_empty()
+    }
+
+    fn look(&mut self, step: u64, state: &State) -> Result<(), String> {
+        if !step.is_multiple_of(LOOK) {
+            return Ok(());
         }
+        self.model.near(state, GAP, &mut self.near).unwrap();
+        let Some(least) = self.near.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+            return Ok(());
+        };
+        self.below_gap += 1;
+        self.nearest = least.distance.min(self.nearest);
+        if least.distance < 0.0 {
+            let names = self.model.names(least.pair);
+            return Err(format!("step {step}: {names:?} at {:e} m", least.distance));
+        }
+        Ok(())
     }
-    if !near.is_empty() {
+
+    fn add_to(self, tally: &mut Tally) {
+        tally.below_gap = self.below_gap;
+        tally.nearest = self.nearest.is_finite().then_some(self.nearest);
+    }
+}
+
+/// A robot among obstacles.
+fn distances(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
+    let model = among_obstacles(robot, 1.0, random);
+    let mut watched = Distances::new(model.clone());
+    let mut q = Vec::new();
+    let is_free = (0..30).any(|_| {
+        q = random.configuration(robot);
+        watched.is_free(&robot.state(&q).unwrap())
+    });
+    if !is_free {
         return Tally::default();
     }
     let mut options = TaskServoOptions::new(robot);
     options.dt = random.power(-3.3, -2.3);
-    options.collisions = Some(CollisionAvoidance { model: model.clone(), gap, margin: 5.0 });
+    options.collisions = Some(CollisionAvoidance { model, gap: GAP, margin: 5.0 });
     let dt = options.dt;
     let Ok(servo) = TaskServo::new(robot, tasks(robot, &q, random), options) else {
         return Tally::default();
     };
     let mut watch = Watch::new(robot, dt, f64::INFINITY);
-    let (mut nearest, mut below_gap) = (f64::INFINITY, 0);
-    let mut tally = task_servo(servo, &mut q, &mut watch, random, |step, q| {
-        if step % LOOK != 0 {
-            return Ok(());
-        }
-        model.near(&robot.state(q).unwrap(), gap, &mut near).unwrap();
-        let Some(least) = near.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
-            return Ok(());
-        };
-        below_gap += 1;
-        nearest = least.distance.min(nearest);
-        if least.distance < 0.0 {
-            return Err(format!("{:?} at {:e} m", model.names(least.pair), least.distance));
-        }
-        Ok(())
-    });
-    tally.below_gap = below_gap;
-    tally.nearest = nearest.is_finite().then_some(nearest);
+    let look = |step, q: &[f64]| watched.look(step, &robot.state(q).unwrap());
+    let mut tally = task_servo(servo, &mut q, &mut watch, random, look);
+    watched.add_to(&mut tally);
+    tally
+}
+
+/// A five-bar among obstacles in its plane.
+fn closed_distances(random: &mut Random<'_>) -> Tally {
+    let robot = five_bar(random);
+    let model = among_obstacles(&robot, 0.02, random);
+    let mut watched = Distances::new(model.clone());
+    let mut q = robot.home().to_vec();
+    if !watched.is_free(&robot.state(&q).unwrap()) {
+        return Tally::default();
+    }
+    let mut options = TaskServoOptions::new(&robot);
+    options.dt = random.power(-3.3, -2.3);
+    options.collisions = Some(CollisionAvoidance { model, gap: GAP, margin: 5.0 });
+    let Ok(servo) = TaskServo::new(&robot, tasks(&robot, &q, random), options) else {
+        return Tally::default();
+    };
+    let look = |step, q: &[f64]| watched.look(step, &robot.state(q).unwrap());
+    let mut tally = closed_servo(servo, &mut q, look);
+    watched.add_to(&mut tally);
     tally
 }

@@ -50,8 +50,14 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
         &map,
         (&robot.frame_of(frame.frame).name, frame.frame_from_tool.translation.to_array()),
     )?;
+    if interrupt.came() {
+        return interrupted();
+    }
     if let Some(path) = &args.out {
         file::write(&robot, &map, &report, path)?;
+    }
+    if interrupt.came() {
+        return interrupted();
     }
     if let Some(path) = &args.plot {
         plot::map::draw(&map, &format!("{}: workspace of {}", robot.name(), report.frame), path)?;

@@ -159,6 +159,13 @@ fn what_is_wrong_with_a_model_is_told_with_its_place() {
         let told = refused(json!({"open": name, "files": [[name, 1]]}), &[b"x"]);
         assert!(told["message"].as_str().unwrap().contains(part), "{name}: {told}");
     }
+    for (one, other) in
+        [("a.urdf", "a.urdf"), ("a/./b.urdf", "a/b.urdf"), ("a/b.urdf", "a//b.urdf")]
+    {
+        let head = json!({"open": one, "files": [[one, 1], [other, 1]]});
+        let told = refused(head, &[b"x", b"y"]);
+        assert!(told["message"].as_str().unwrap().contains("twice"), "{other}: {told}");
+    }
     let short = refused(json!({"open": "a.urdf", "files": [["a.urdf", 9]]}), &[b"x"]);
     assert!(short["message"].as_str().unwrap().contains("fewer bytes"), "{short}");
     let long = refused(json!({"open": "a.urdf", "files": [["a.urdf", 0]]}), &[b"x"]);

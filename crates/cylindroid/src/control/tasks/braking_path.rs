@@ -269,3 +269,59 @@ fn way_with(levers: &[f64], change: &[f64]) -> f64 {
     let parts = levers.iter().zip(change).filter(|(_, change)| **change != 0.0);
     parts.map(|(lever, change)| lever * change).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::uniform;
+
+    /// The positions of a joint that brakes, step by step, relative to the start.
+    fn simulated(velocity: f64, acceleration: f64, limits: &Limits, dt: f64) -> Vec<f64> {
+        let (mut v, mut a, mut ways) = (velocity, acceleration, vec![0.0, dt * velocity]);
+        while v != 0.0 || (limits.jerk < f64::INFINITY && a.abs() > 1.001 * limits.jerk * dt) {
+            let next = if limits.jerk < f64::INFINITY {
+                JerkLimitedStop::new(limits, v, a, dt).next()
+            } else {
+                (v.abs() - limits.acceleration * dt).max(0.0).copysign(v)
+            };
+            (v, a) = (next, (next - v) / dt);
+            ways.push(ways[ways.len() - 1] + dt * v);
+        }
+        ways
+    }
+
+    /// Also of joints that turn round on their way to rest, with and without limits of the jerk.
+    #[test]
+    fn changes_are_those_of_braking_step_by_step() {
+        let mut seed = 3;
+        let mut next = || 2.0 * uniform(&mut seed) - 1.0;
+        let mut turns = 0;
+        for round in 0..600 {
+            let dt = 0.004;
+            let (v, a) = ([next(), 0.05 * next()][round % 2], 1.5 * next());
+            let jerk = if round % 3 == 0 { f64::INFINITY } else { 10.0_f64.powf(1.0 + next()) };
+            let limits = Limits { acceleration: 1.5 + next(), jerk, ..Limits::NONE };
+            let joint = Braking::new(v, a, &limits, dt);
+            let ways = simulated(v, a, &limits, dt);
+            assert!((joint.steps() - (ways.len() - 1) as f64).abs() <= 2.0, "{joint:?}");
+            let end = joint.change_after(joint.steps());
+            assert!((end - ways[ways.len() - 1]).abs() < 1e-9, "{end} {joint:?}");
+            let from = (0.5 * (1.0 + next()) * ways.len() as f64) as usize % ways.len();
+            for from in [0, from] {
+                let mut furthest = 0.0_f64;
+                for (to, way) in ways.iter().enumerate().skip(from) {
+                    let change = joint.change_after(to as f64);
+                    assert!((change - way).abs() < 1e-9, "{to}: {change} {way} {joint:?}");
+                    furthest = furthest.max((way - ways[from]).abs());
+                    let told = joint.largest_change(from as f64, to as f64);
+                    assert!(told > furthest - 1e-9, "{from} {to}: {told} {furthest} {joint:?}");
+                    // The first step and what follows count apart where they go different ways.
+                    let most = furthest + if from == 0 { 2.0 * dt * v.abs() } else { 0.0 };
+                    assert!(told < most + 1e-9, "{from} {to}: {told} {most} {joint:?}");
+                }
+                turns += usize::from(furthest > (ways[ways.len() - 1] - ways[from]).abs() + 1e-6);
+            }
+        }
+        assert!(turns > 50, "{turns}");
+    }
+}

@@ -177,7 +177,7 @@ impl Map {
     /// What one of its modes reaches, by its place in `modes`.
     ///
     /// # Errors
-    /// A mode that there is not.
+    /// A number that is not below the number of modes.
     pub fn workspace_of(&self, mode: usize) -> Result<Region> {
         let own = self.modes.get(mode).ok_or_else(|| Error::InvalidOption {
             option: "mode",
