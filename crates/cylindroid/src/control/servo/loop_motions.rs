@@ -177,6 +177,41 @@ impl LoopMotions {
         self.close_present(&mut closure_error)
     }
 
+    /// Moves the closed configuration by these changes of the actuated joints (n + e entries), the
+    /// passive ones follow; writes the changes of all. False, and then at no place in particular, if
+    /// the loops cannot be followed so far or are near a type II singularity.
+    pub(in crate::control) fn follow(&mut self, change: &[f64], moved: &mut [f64]) -> Result<bool> {
+        moved.fill(0.0);
+        self.add_following(change, moved);
+        let n = self.q.len();
+        self.mechanism.integrate_in_place(&mut self.q, &moved[..n], 1.0);
+        let mut closure_error = self.partitioning.load(&self.q)?;
+        self.close_present(&mut closure_error)?;
+        let corrections = self.passive_change.iter().zip(&self.actuated_change);
+        moved.iter_mut().zip(corrections).for_each(|(moved, (p, a))| *moved += p + a);
+        Ok(self.is_regular && closure_error.is_closed(self.mechanism.reach()))
+    }
+
+    /// Goes back to a closed configuration; false near a type II singularity.
+    pub(in crate::control) fn set_closed(&mut self, q: &[f64]) -> Result<bool> {
+        self.q.copy_from_slice(q);
+        self.partitioning.load(q)?;
+        self.is_regular = self.partitioning.solve(&self.weights);
+        Ok(self.is_regular)
+    }
+
+    /// Adds the changes of all joints, to first order, for those of the actuated ones.
+    pub(in crate::control) fn add_following(&mut self, change: &[f64], moved: &mut [f64]) {
+        for j in 0..self.partitioning.motions() {
+            self.partitioning.motion_into(j, &mut self.rates);
+            let weight = |i: usize| self.weights.get(i).copied().unwrap_or(1.0);
+            let all = self.rates.iter().zip(change).enumerate();
+            // Changes of passive joints are zero.
+            let along: f64 = all.map(|(i, (m, change))| weight(i) * m * change).sum();
+            moved.iter_mut().zip(&self.rates).for_each(|(moved, m)| *moved += along * m);
+        }
+    }
+
     /// Writes M at the closed configuration. `moves` says whether velocities of the n + e (which it
     /// may change) move what is controlled: where the passive joints alone can do that, or where the
     /// actuated ones may take a small share of a motion, the map of all motions is returned.

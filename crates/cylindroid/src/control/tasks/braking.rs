@@ -4,8 +4,9 @@
 //! Formula  v, then its mean with braking b from the last step, then b: the first of them whose
 //!          braking path is clear (`braking_path.rs`). That of b is the rest of one that was looked
 //!          at a step before
-//! Valid    trees that move as commanded, from a start at rest with all bodies apart, among obstacles
-//!          that rest. Where no path is clear, the velocities of the solver stand
+//! Valid    robots that move as commanded, from a start at rest with all bodies apart, among obstacles
+//!          that rest; closed chains away from type II singularities. Where no path is clear, the
+//!          velocities of the solver stand
 //! Source   Fraichard & Asama, Inevitable collision states, Advanced Robotics 18 (2004), 1001-1024
 //! Checked  tests/it/servo/braking_path.rs, tests/limits/main.rs
 
@@ -23,32 +24,43 @@ impl TaskServo {
     pub(super) fn keep_braking_clear(&mut self) -> Result<()> {
         let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
         let (dt, path, state) = (self.options.dt, &mut self.braking, &self.state);
-        if self.motions.limit_rows() > 0 || state.q().is_empty() {
-            return Ok(()); // of a closed chain
+        if state.q().is_empty() {
+            return Ok(());
         }
         let start = Start { state, near: &self.near, margin: collisions.margin };
         let (mut accepted, mut contact) = (None, None);
         for share in SHARES {
             let mut velocities = std::mem::take(&mut path.velocities);
             let mut accelerations = std::mem::take(&mut path.accelerations);
-            let all = velocities.iter_mut().zip(&mut accelerations).enumerate();
-            for (i, (v, acceleration)) in all {
+            for (i, v) in velocities.iter_mut().enumerate() {
                 let (before, solved, limits) = (self.before[i], self.rates[i], &self.limits[i]);
-                let braking = || {
-                    if limits.jerk < f64::INFINITY {
-                        // `self.bounds` are cut to the velocities that the tasks ask for: not here.
-                        let (position, acceleration) = (state.q()[i], self.accelerations[i]);
-                        let now = JointState { position, velocity: before, acceleration };
-                        let slower = JerkLimitedStop::new(limits, before, acceleration, dt).next();
-                        self.motions.bounds(i, limits, now, dt).clamp(slower)
-                    } else {
-                        let slower = (before.abs() - limits.acceleration * dt).max(0.0);
-                        self.bounds[i].clamp(slower.copysign(before))
-                    }
+                if share == 1.0 {
+                    *v = solved;
+                    continue;
+                }
+                let bounds = &mut path.bounds[i];
+                let slower = if limits.jerk < f64::INFINITY {
+                    // `self.bounds` are cut to the velocities that the tasks ask for: not here.
+                    let position = state.q().get(i).copied().unwrap_or(0.0);
+                    let acceleration = self.accelerations[i];
+                    let now = JointState { position, velocity: before, acceleration };
+                    *bounds = self.motions.bounds(i, limits, now, dt);
+                    JerkLimitedStop::new(limits, before, acceleration, dt).next()
+                } else {
+                    *bounds = self.bounds[i];
+                    (before.abs() - limits.acceleration * dt).max(0.0).copysign(before)
                 };
-                let mean = |braking| braking + share * (solved - braking);
-                *v = if share < 1.0 { mean(braking()) } else { solved };
-                *acceleration = acceleration_of(limits, self.accelerations[i], *v - before, dt);
+                let braking = bounds.clamp(slower);
+                *v = braking + share * (solved - braking);
+            }
+            if share < 1.0 && self.motions.loops().is_some() {
+                // The actuated joints brake, the others follow.
+                self.motions.unknowns_of(&velocities, &mut path.unknowns);
+                self.motions.velocities(&path.unknowns, &path.bounds, &mut velocities);
+            }
+            for (i, acceleration) in accelerations.iter_mut().enumerate() {
+                let change = velocities[i] - self.before[i];
+                *acceleration = acceleration_of(&self.limits[i], self.accelerations[i], change, dt);
             }
             let motion = Motion {
                 velocities: &velocities,

@@ -4,17 +4,22 @@
 //! Formula  configuration after k steps  q_k = q + dt sum v_j, v_0 = v, v_(j+1) = v_j reduced by A dt;
 //!          all pairs apart at q_1, q_2, ... Steps are left out while no pair moves further than its
 //!          distance:  sum_c l_c max_(h<i<=k) |q_i - q_h|_c < d(q_h), l_c the lever of coordinate c
-//!          With a jerk limit v_j of `servo/jerk_limited_stop.rs`
+//!          With a jerk limit v_j of `servo/jerk_limited_stop.rs`.
+//!          In a closed chain the actuated joints brake and the others follow: steps are left out
+//!          while  sum_c l_c |q_k - q_h|_c < d(q_h) + d(q_k)
 //! Units    m, rad or m of the coordinates, s
-//! Valid    trees among obstacles that rest; levers are those of the present configuration
+//! Valid    obstacles that rest; levers are those of the present configuration. Closed chains away
+//!          from type II singularities, between two looks without turns of the passive joints
 //! Cost     a sum over the joints while all pairs are further apart than they move; otherwise at
 //!          most `LOOKS` configurations. No allocation
 //! Source   Fraichard & Asama, Inevitable collision states, Advanced Robotics 18 (2004), 1001-1024
 //! Checked  tests/it/servo/braking_path.rs, tests/allocation/main.rs
 
+use super::motions::Motions;
 use super::options::{CollisionAvoidance, MOST_PAIRS};
 use crate::collision::{CollisionModel, NearPair};
-use crate::control::servo::JerkLimitedStop;
+use crate::control::servo::{JerkLimitedStop, LoopMotions};
+use crate::control::solver::bounds::VelocityBounds;
 use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::{Limits, Mechanism};
@@ -22,6 +27,10 @@ use crate::model::{Limits, Mechanism};
 /// Configurations of a path at which distances are evaluated, at most; a path with more of them
 /// counts as not clear.
 const LOOKS: usize = 32;
+
+/// Passive joints go so many times as far as they would at the velocities of the present
+/// configuration, at most.
+const BENT: f64 = 3.0;
 
 /// Steps of a path at most: joints without deceleration never rest.
 const MOST_STEPS: f64 = 1e6;
@@ -46,7 +55,24 @@ pub(super) struct BrakingPath {
     levers: Vec<f64>,
     pub(super) velocities: Vec<f64>,
     pub(super) accelerations: Vec<f64>,
+    /// Of the velocities while braking; the unknowns that have them.
+    pub(super) bounds: Vec<VelocityBounds>,
+    pub(super) unknowns: Vec<f64>,
     far: Vec<NearPair>,
+    loops: Option<Box<LoopPath>>,
+}
+
+/// What a path of a closed chain needs besides.
+#[derive(Debug, Clone)]
+struct LoopPath {
+    motions: LoopMotions,
+    /// True for the actuated ones of the coordinates and actuated loop joints.
+    are_actuated: Vec<bool>,
+    /// The last configuration of the path that was looked at, and the changes from it to a later one.
+    last: Vec<f64>,
+    moved: Vec<f64>,
+    /// Distances of the doubtful pairs there.
+    distances: Vec<f64>,
 }
 
 /// What a path starts from: the state, its near pairs, and the distance of all others at least.
@@ -128,21 +154,32 @@ impl Braking {
 
 impl BrakingPath {
     /// For a robot at rest, with this number of pairs.
-    pub(super) fn new(mechanism: &Mechanism, pairs: usize) -> Result<Self> {
+    pub(super) fn new(mechanism: &Mechanism, motions: &Motions, pairs: usize) -> Result<Self> {
         let n = mechanism.n();
+        let loops = motions.loops().map(|motions| LoopPath {
+            motions: motions.clone(),
+            are_actuated: motions.are_actuated(),
+            last: vec![0.0; n],
+            moved: vec![0.0; motions.velocities()],
+            distances: Vec::with_capacity(MOST_PAIRS),
+        });
+        let v = motions.loops().map_or(n, LoopMotions::velocities);
         Ok(Self {
             is_clear: false,
             expected: vec![0.0; n],
             revision: 0,
-            joints: Vec::with_capacity(n),
+            joints: Vec::with_capacity(v),
             state: mechanism.state(mechanism.home())?,
             q: vec![0.0; n],
-            change: vec![0.0; n],
+            change: vec![0.0; v],
             doubtful: Vec::with_capacity(MOST_PAIRS),
             levers: vec![0.0; MOST_PAIRS * n],
-            velocities: vec![0.0; n],
-            accelerations: vec![0.0; n],
+            velocities: vec![0.0; v],
+            accelerations: vec![0.0; v],
+            bounds: vec![VelocityBounds::NONE; v],
+            unknowns: vec![0.0; motions.unknowns()],
             far: Vec::with_capacity(pairs),
+            loops: loops.map(Box::new),
         })
     }
 
@@ -155,6 +192,7 @@ impl BrakingPath {
     /// be: no body is off by more than half of the gap.
     pub(super) fn is_continued(&mut self, state: &State, collisions: &CollisionAvoidance) -> bool {
         let model = &collisions.model;
+        self.change.fill(0.0);
         let off = self.change.iter_mut().zip(&self.expected).zip(state.q());
         off.for_each(|((off, expected), q)| *off = q - expected);
         let mut ways = (0..model.bodies().len()).map(|b| model.way(state, b, &self.change));
@@ -172,12 +210,23 @@ impl BrakingPath {
         self.joints.clear();
         let all = motion.velocities.iter().zip(motion.accelerations).zip(motion.limits);
         self.joints.extend(all.map(|((v, a), limits)| Braking::new(*v, *a, limits, motion.dt)));
+        if let Some(loops) = &mut self.loops {
+            let joints = self.joints.iter_mut().zip(&loops.are_actuated);
+            let passive = joints.filter(|(_, is_actuated)| !**is_actuated);
+            passive.for_each(|(joint, _)| *joint = Braking::Steady { way: 0.0, less: 0.0 });
+            if !loops.motions.set_closed(start.state.q())? {
+                return Ok(None);
+            }
+        }
         let steps = self.joints.iter().map(Braking::steps).fold(0.0, f64::max).min(MOST_STEPS);
         if let Some(pair) = self.load_doubtful(start, model, steps)? {
             return Ok(Some(pair));
         }
         if self.doubtful.is_empty() {
             return Ok(None);
+        }
+        if self.loops.is_some() {
+            return self.contact_of_loops(model, steps);
         }
         let mut now = 0.0;
         for _ in 0..LOOKS {
@@ -207,6 +256,59 @@ impl BrakingPath {
         Ok(nearest.map(|(pair, _)| *pair))
     }
 
+    /// The same of a closed chain, whose doubtful pairs are loaded.
+    fn contact_of_loops(
+        &mut self,
+        model: &mut CollisionModel,
+        steps: f64,
+    ) -> Result<Option<usize>> {
+        let n = self.q.len();
+        let Some(loops) = &mut self.loops else { return Ok(None) };
+        loops.last.copy_from_slice(loops.motions.q());
+        let (mut now, mut ahead) = (0.0, steps);
+        for _ in 0..LOOKS {
+            let to = (now + ahead).min(steps);
+            for (change, joint) in self.change.iter_mut().zip(&self.joints) {
+                *change = joint.change_after(to) - joint.change_after(now);
+            }
+            let follows = loops.motions.follow(&self.change, &mut loops.moved)?;
+            loops.distances.clear();
+            if follows {
+                self.state.set(loops.motions.q())?;
+                model.place(&self.state);
+                for (pair, _) in &self.doubtful {
+                    let distance = model.distance_of(*pair);
+                    // Nor is NaN a distance.
+                    if !(distance > 0.0) {
+                        return Ok(Some(*pair));
+                    }
+                    loops.distances.push(distance);
+                }
+            }
+            loops.moved.iter_mut().for_each(|moved| *moved = moved.abs());
+            let between = self.doubtful.iter().zip(&loops.distances);
+            let mut pairs = between.zip(self.levers.chunks_exact(n));
+            let is_clear = follows
+                && (ahead <= 1.0
+                    || pairs.all(|(((_, d), then), row)| way_with(row, &loops.moved) < d + then));
+            if is_clear {
+                (now, ahead) = (to, 2.0 * ahead);
+                loops.last.copy_from_slice(loops.motions.q());
+                let distances = self.doubtful.iter_mut().zip(&loops.distances);
+                distances.for_each(|((_, distance), then)| *distance = *then);
+                if now >= steps {
+                    return Ok(None);
+                }
+            } else if ahead <= 1.0 || !loops.motions.set_closed(&loops.last)? {
+                break; // the loops cannot be followed
+            } else {
+                ahead = (0.5 * (to - now)).floor().max(1.0);
+            }
+        }
+        let nearest = self.doubtful.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        Ok(nearest.map(|(pair, _)| *pair))
+    }
+
     /// The pairs that are apart and may come together on the way, with their levers; one of them if
     /// there are too many.
     fn load_doubtful(
@@ -215,8 +317,19 @@ impl BrakingPath {
         model: &mut CollisionModel,
         steps: f64,
     ) -> Result<Option<usize>> {
-        let n = self.change.len();
+        let n = self.q.len();
+        if let Some(loops) = &mut self.loops {
+            self.change.iter_mut().zip(&self.joints).for_each(|(change, joint)| {
+                *change = joint.change_after(steps);
+            });
+            loops.moved.fill(0.0);
+            loops.motions.add_following(&self.change, &mut loops.moved);
+        }
         self.load_largest_changes(0.0, steps);
+        if let Some(loops) = &self.loops {
+            let all = self.change.iter_mut().zip(&loops.moved);
+            all.for_each(|(change, moved)| *change = BENT * change.max(moved.abs()));
+        }
         let ways = (0..model.bodies().len()).map(|b| model.way(start.state, b, &self.change));
         let furthest = 2.0 * ways.fold(0.0, f64::max);
         self.doubtful.clear();
@@ -243,7 +356,7 @@ impl BrakingPath {
     /// The last step up to which no pair can move by its distance since that of the last look.
     fn clear_until(&mut self, now: f64, steps: f64) -> f64 {
         let (mut clear, mut beyond) = (now, steps);
-        let n = self.change.len();
+        let n = self.q.len();
         while clear < beyond {
             let middle = (0.5 * (clear + beyond)).ceil();
             self.load_largest_changes(now, middle);

@@ -172,6 +172,14 @@ impl Motions {
         }
     }
 
+    /// Of a closed chain.
+    pub(super) fn loops(&self) -> Option<&LoopMotions> {
+        match self {
+            Self::Tree(_) => None,
+            Self::Loops(loops) => Some(&loops.motions),
+        }
+    }
+
     /// False for the passive joints of a closed chain.
     pub(super) fn is_actuated(&self, i: usize) -> bool {
         match self {

@@ -203,7 +203,7 @@ impl TaskServo {
             before: vec![0.0; v],
             accelerations: vec![0.0; v],
             desired_rates,
-            braking: BrakingPath::new(mechanism, capacity)?,
+            braking: BrakingPath::new(mechanism, &motions, capacity)?,
             lowest_velocities: vec![0.0; n],
             escape: Escape::new(mechanism, &motions, &tasks, &stacks).map(Box::new),
             reports: vec![report; tasks.len()],
