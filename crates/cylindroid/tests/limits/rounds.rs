@@ -1,5 +1,6 @@
 //! One round: a robot, a servo, a start, targets that jump, pushes.
 
+use cylindroid::closure::ActuationMap;
 use cylindroid::collision::{CollisionModel, CollisionOptions, NearPair};
 use cylindroid::control::{
     CollisionAvoidance, MotionTask, SecondaryTask, ServoGains, Task, TaskObjective, TaskServo,
@@ -371,6 +372,9 @@ fn among_obstacles(robot: &Mechanism, height: f64, random: &mut Random<'_>) -> C
     model
 }
 
+/// The least actuated share of all motions of a five-bar away from type II singularities [-].
+const SHARE: f64 = 0.05;
+
 /// The least distance that a servo is to keep (m).
 const GAP: f64 = 0.005;
 
@@ -457,7 +461,14 @@ fn closed_distances(random: &mut Random<'_>) -> Tally {
     let Ok(servo) = TaskServo::new(&robot, tasks(&robot, &q, random), options) else {
         return Tally::default();
     };
-    let look = |step, q: &[f64]| watched.look(step, &robot.state(q).unwrap());
+    let mut is_controlled = true;
+    let look = |step, q: &[f64]| {
+        let state = robot.state(q).unwrap();
+        // From a type II singularity on the drives do not say where the passive joints go.
+        let map = ActuationMap::of(&state, &[], &[]).unwrap();
+        is_controlled &= map.uncontrolled.cols() == 0 && map.shares.iter().all(|s| *s >= SHARE);
+        if is_controlled { watched.look(step, &state) } else { Ok(()) }
+    };
     let mut tally = closed_servo(servo, &mut q, look);
     watched.add_to(&mut tally);
     tally
