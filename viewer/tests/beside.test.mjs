@@ -149,6 +149,9 @@ test("models beside the first are recorded and played with it, here and on a pag
     await untilDrawnAt(page, "viewer", track.states[at].links);
     assert.equal((await beside(page))[0]?.q[0], -0.5, "it has not moved");
     await picture(page, "beside-recorded");
+    // Plots of the first last as long as the recording.
+    const lasts = await page.evaluate(() => [.../** @type {any} */ (window).viewer.timeline.plots.charts.values()].map(({ plot }) => plot?.scales.x.max).filter(Boolean));
+    assert.ok(lasts.length > 0 && lasts.every((/** @type {number} */ last) => last === track.times.at(-1)), `${lasts} of ${track.times.at(-1)}`);
     const path = join(folder, "beside.html");
     await writeFile(path, await saved(page, "Save HTML that plays the recording by itself"));
     await page.getByRole("button", { name: "live" }).click();

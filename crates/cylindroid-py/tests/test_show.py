@@ -3,6 +3,7 @@
 import gc
 import os
 import queue
+import shlex
 import signal
 import socket
 import subprocess
@@ -13,6 +14,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -360,11 +362,12 @@ def test_a_thread_may_show_a_robot():
         state_with(page, PANDA.home + 0.1)
 
 
-@pytest.mark.skipif(os.name == "nt", reason="the browser is a script of a shell")
 def test_the_browser_opens_the_address(tmp_path):
-    browser, opened = tmp_path / "browser", tmp_path / "opened"
-    browser.write_text(f'#!/bin/sh\necho "$1" >> "{opened}"\n')
-    browser.chmod(0o755)
+    browser, opened = tmp_path / "browser.py", tmp_path / "opened"
+    browser.write_text('import sys\nopen(sys.argv[2], "a").write(sys.argv[1] + "\\n")\n')
+    # A command line with the place of the address, as `webbrowser` takes it on every system.
+    words = [shlex.quote(Path(word).as_posix()) for word in (sys.executable, browser, opened)]
+    command = f"{words[0]} {words[1]} %s {words[2]}"
     program = """
 import threading
 import cylindroid as cy
@@ -376,7 +379,7 @@ views[0].open()
 print(*[view.url for view in [*views, views[0]]], sep="\\n")
 """
     done = subprocess.run(
-        [sys.executable, "-c", program], env={**os.environ, "BROWSER": str(browser)},
+        [sys.executable, "-c", program], env={**os.environ, "BROWSER": command},
         capture_output=True, text=True, check=True, timeout=PATIENCE,
     )
     assert done.stdout.splitlines() == opened.read_text().splitlines()

@@ -4,7 +4,7 @@ import { h, text } from "../dom";
 import { fixed, short } from "../format";
 import { colour } from "../theme";
 import { digitsOf, shown, unitOf } from "../units";
-import { AT_LIMIT, SINGULAR, type Columns } from "./columns";
+import { AT_LIMIT, SINGULAR } from "./columns";
 import { MOST_LINES, type Kind, type Line } from "./kinds";
 import type { Recording } from "./recording";
 
@@ -40,7 +40,7 @@ export class Chart {
   /** All of a recording; what is there is drawn anew. */
   show(recording: Recording): void {
     const lines = this.kind.lines(recording);
-    const data = dataOf(recording.columns, lines);
+    const data = dataOf(recording, lines);
     const present = lines.filter((_, i) => data[i + 1]?.some((value) => value !== null));
     const all = recording.scene.coordinates.length;
     const isPart = lines.length < all && lines.length === MOST_LINES;
@@ -60,7 +60,7 @@ export class Chart {
       this.built = built;
       this.build(lines, data, width);
     }
-    this.host.setAttribute("aria-label", `${this.kind.title} over ${fixed(recording.duration, 2)} s, ${lines.length} lines; the values at the time shown are below`);
+    this.host.setAttribute("aria-label", `${this.kind.title} over ${fixed(recording.end, 2)} s, ${lines.length} lines; the values at the time shown are below`);
   }
 
   /** The values and the place of a moment. */
@@ -192,10 +192,16 @@ function powers(_: uPlot, places: number[]): (number | null)[] {
   return places.map((place) => (Math.abs(Math.log10(place) - Math.round(Math.log10(place))) < 1e-9 ? place : null));
 }
 
-function dataOf(columns: Columns, lines: Line[]): uPlot.AlignedData {
+function dataOf({ columns, duration, end }: Recording, lines: Line[]): uPlot.AlignedData {
   const values = lines.map(({ column, quantity }) => {
     const scale = shown(1, quantity);
     return Array.from(column.view(), (value) => (Number.isNaN(value) ? null : value * scale));
   });
-  return [Array.from(columns.time.view()), ...values] as uPlot.AlignedData;
+  const times = Array.from(columns.time.view());
+  if (end > duration) {
+    // The robot rests while what stands beside it moves.
+    times.push(end);
+    for (const own of values) own.push(own.at(-1) ?? null);
+  }
+  return [times, ...values] as uPlot.AlignedData;
 }

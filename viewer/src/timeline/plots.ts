@@ -60,11 +60,9 @@ export class Plots {
     this.timer ||= window.setTimeout(() => this.draw(), PAUSE);
   }
 
-  /** What stands beside the robot may be recorded longer than what is plotted. */
   at(index: number, time: number): void {
     this.moment = { index, time };
-    const shown = Math.min(time, this.recording?.duration ?? time);
-    if (this.panel.isOpen()) for (const chart of this.charts.values()) chart.at(index, shown);
+    if (this.panel.isOpen()) for (const chart of this.charts.values()) chart.at(index, time);
   }
 
   /** All plots that are shown, one below the other. */
