@@ -1,6 +1,6 @@
 //! Times of the nearest solution of inverse kinematics, and of targets without one; with `--compare`
 //! also its distance against that of a search of 1000 starts:
-//! `cargo bench -p cylindroid --bench nearest -- [--compare] [file.urdf:frame ...]`.
+//! `cargo bench -p cylindroid --bench nearest -- [--compare] [ROBOT ...] [file.urdf:frame ...]`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
@@ -17,10 +17,12 @@ const COMPARED: usize = 1000;
 const STARTS: usize = 1000;
 
 fn main() {
-    let files = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
+    let named = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
+    let (files, robots): (Vec<_>, Vec<_>) = named.partition(|name| name.contains(':'));
+    let is_chosen = |name: &str| robots.is_empty() || robots.iter().any(|robot| robot == name);
     println!("| robot | targets | solved | median [us] | 99 % [us] | most [us] |");
     println!("|---|---|---:|---:|---:|---:|");
-    for name in ["panda", "iiwa14", "ur5e", "puma560"] {
+    for name in ["panda", "iiwa14", "ur5e", "puma560"].into_iter().filter(|name| is_chosen(name)) {
         let robot = catalogue::load(name).unwrap();
         let tool = robot.tool();
         rows(name, &robot, tool.into());
@@ -28,7 +30,7 @@ fn main() {
     if std::env::args().any(|a| a == "--compare") {
         println!("| robot | targets | starts | closer | farther | farther by [rad] |");
         println!("|---|---:|---:|---:|---:|---:|");
-        for name in ["panda", "iiwa14"] {
+        for name in ["panda", "iiwa14"].into_iter().filter(|name| is_chosen(name)) {
             against_starts(name, &catalogue::load(name).unwrap());
         }
     }

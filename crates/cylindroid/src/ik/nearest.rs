@@ -111,7 +111,7 @@ impl Solver {
         solutions: &mut Vec<Candidate>,
     ) -> Result<usize> {
         let Some((locked, range)) = formulas.range_about(&self.preferred) else { return Ok(0) };
-        let places = formulas.analytic.coordinates();
+        let (places, is_exact) = (formulas.analytic.coordinates(), formulas.analytic.is_exact());
         let own = self.preferred[locked];
         let mut samples = Samples::default();
         let mut q = self.start.clone();
@@ -120,6 +120,7 @@ impl Solver {
         }
         let mut closest = self.first_restart(&mut q, solutions)?;
         q.copy_from_slice(&self.start);
+        formulas.analytic.check(target, &q)?;
         let (mut best, mut calls) = (closest * closest, 0);
         // Every sample is a solution.
         let is_accepted = self.avoidance.is_none() && self.problem.half_spaces.is_empty();
@@ -161,20 +162,28 @@ impl Solver {
                 Sample { value, angles, far, excluded }
             };
             let (first, mut count) = (samples.all.len(), 0);
-            let found = formulas.analytic.solve_with(target, &q, |angles, most| {
+            let near = places.map(|c| q[c]);
+            formulas.analytic.candidates(target, &q, |analytic, angles, free| {
+                let (angles, excluded) = analytic.clamped(angles, &near);
+                let mut candidate = sample(angles, excluded);
+                // A start of a descent need not be verified, the closest one ends the sampling.
+                let is_closest = is_accepted && candidate.far < best;
+                if excluded == 0.0 && (is_closest || !is_exact || free != [false; 6]) {
+                    let Some(found) = analytic.confirmed(angles, free, &target, &near) else {
+                        return false;
+                    };
+                    candidate = sample(found.q, 0.0);
+                    if is_accepted {
+                        best = best.min(candidate.far);
+                    }
+                }
                 count += 1;
-                if most < NEARLY_WITHIN {
-                    samples.all.push(sample(angles, most));
+                if excluded < NEARLY_WITHIN {
+                    samples.all.push(candidate);
                 }
-            })?;
-            for found in found.iter() {
-                let sample = sample(found.q, 0.0);
-                if is_accepted {
-                    best = best.min(sample.far);
-                }
-                samples.all.push(sample);
-            }
-            samples.end_group(first, value, count + found.len());
+                excluded == 0.0
+            });
+            samples.end_group(first, value, count);
         }
         let preferred = places.map(|c| self.preferred[c]);
         if is_accepted {

@@ -27,7 +27,7 @@ pub(crate) use cpu::{Avx2, Avx512};
 pub(crate) use fnv1a::fnv1a;
 pub(crate) use simd::{MAX_LANES, Simd, Simd4, SimdFloat};
 pub(crate) use splitmix64::uniform;
-pub(crate) use trig::sin_cos;
+pub(crate) use trig::{atan2, sin_cos};
 
 /// How kernels round: of two processors with one name all results are the same to the bit.
 /// Registers of four and eight lanes agree, plain numbers round each product.

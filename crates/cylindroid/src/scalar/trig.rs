@@ -1,5 +1,5 @@
-//! Sine and cosine as a pair, for one number or for SIMD lanes; bit-identical on all processors
-//! with fused multiply-add, and on all without.
+//! Sine and cosine as a pair, for one number or for SIMD lanes, and the arc tangent of one;
+//! bit-identical on all processors with fused multiply-add, and on all without.
 //!
 //! Formula  reduction by multiples of pi/2 (Cody-Waite, in three parts or in two fused ones), then
 //!          the polynomials of fdlibm
@@ -9,8 +9,11 @@
 //! Why so   a joint angle costs 18 ns in the standard library and 4 ns here, and forward kinematics
 //!          of seven joints consists of seven of these and 400 multiplications
 //! Source   FreeBSD msun k_sin.c, k_cos.c, e_rem_pio2.c (the polynomial coefficients)
-//! Checked  tests::agrees_with_std, tests::handles_every_quadrant_and_bad_input,
-//!          tests::lanes_agree_with_std, tests::many_are_as_each
+//! Checked  tests::agrees_with_std, tests::arc_tangents_agree_with_std,
+//!          tests::handles_every_quadrant_and_bad_input, tests::lanes_agree_with_std,
+//!          tests::many_are_as_each
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use super::simd::{MAX_LANES, Simd};
 
@@ -85,6 +88,41 @@ pub(super) fn sines_cosines<R: Simd>(x: &mut [R], sines: &mut [R], memory: &mut 
     for i in 0..n {
         (sines[i], x[i]) = in_quadrant(sines[i], x[i], memory[i]);
     }
+}
+
+/// The angle of (cos, sin), of any length but zero, in [-pi, pi], to 3 ulp.
+///
+/// Takes half the time of the standard library's; the closed form calls it thirty times per pose, and
+/// an error of orientation once.
+/// Source: Cephes atan.c (the rational function).
+#[inline]
+pub(crate) fn atan2(sin: f64, cos: f64) -> f64 {
+    const P: [f64; 5] = [
+        -8.750_608_600_031_904e-1,
+        -1.615_753_718_733_365e1,
+        -7.500_855_792_314_705e1,
+        -1.228_866_684_490_136_1e2,
+        -6.485_021_904_942_025e1,
+    ];
+    const Q: [f64; 5] = [
+        2.485_846_490_142_306_2e1,
+        1.650_270_098_316_988_5e2,
+        4.328_810_604_912_902_6e2,
+        4.853_903_996_359_137e2,
+        1.945_506_571_482_614e2,
+    ];
+    let (x, y) = (cos.abs(), sin.abs());
+    let (low, high) = if y > x { (x, y) } else { (y, x) };
+    // The tangent, or that of the complement to an eighth of a turn.
+    let (up, down, base) =
+        if low > 0.66 * high { (low - high, low + high, FRAC_PI_4) } else { (low, high, 0.0) };
+    let t = up / down;
+    let z = t * t;
+    let p = (((P[0] * z + P[1]) * z + P[2]) * z + P[3]) * z + P[4];
+    let q = ((((z + Q[0]) * z + Q[1]) * z + Q[2]) * z + Q[3]) * z + Q[4];
+    let first = base + (t + t * (z * p / q));
+    let upper = if y > x { FRAC_PI_2 - first } else { first };
+    (if cos < 0.0 { PI - upper } else { upper }).copysign(sin)
 }
 
 /// For |x| <= `LARGE`; anything for other x.
@@ -186,7 +224,7 @@ mod tests {
     use super::super::Array;
     #[cfg(target_arch = "x86_64")]
     use super::super::{Avx2, Avx512, Lanes4, Lanes8, MAX_LANES, Simd};
-    use super::sin_cos;
+    use super::{atan2, sin_cos};
     #[cfg(target_arch = "x86_64")]
     use std::array::from_fn;
 
@@ -212,6 +250,24 @@ mod tests {
             check(f64::from(i) * 1.234_567e-2);
         }
         assert!(worst <= 1.0, "worst error {worst} ulp");
+    }
+
+    #[test]
+    fn arc_tangents_agree_with_std() {
+        let mut x = -3.2_f64;
+        while x < 3.2 {
+            for size in [1e-12, 1.0, 3e9] {
+                let (s, c) = (size * x.sin(), size * x.cos());
+                let exact = s.atan2(c);
+                let error = (atan2(s, c) - exact).abs() / (exact.abs() * f64::EPSILON);
+                assert!(error <= 3.0, "{x}: {error} ulp");
+            }
+            x += 1.234_567e-4;
+        }
+        use std::f64::consts::{FRAC_PI_2, PI};
+        assert_eq!((atan2(0.0, 1.0), atan2(1.0, 0.0)), (0.0, FRAC_PI_2));
+        assert_eq!((atan2(0.0, -1.0), atan2(-0.0, -1.0)), (PI, -PI));
+        assert!(atan2(1.0, f64::NAN).is_nan() && atan2(f64::NAN, 1.0).is_nan());
     }
 
     #[test]

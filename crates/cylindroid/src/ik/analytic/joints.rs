@@ -31,6 +31,28 @@ pub(super) fn are_revolute(
     revolute == 6
 }
 
+/// True if the locked coordinates move only nodes that follow the six joints: the tool, and none of
+/// their axes.
+pub(super) fn are_beyond(
+    mechanism: &Mechanism,
+    end_effector: EndEffector,
+    coordinates: &[usize; 6],
+    locked: &[usize],
+) -> bool {
+    let mut slot = mechanism.frame_of(end_effector.frame).slot;
+    let mut is_before = false;
+    while slot > 0 {
+        let node = &mechanism.nodes()[slot - 1];
+        let own = node.coordinate..node.coordinate + node.kind.dof();
+        is_before |= own.clone().any(|c| coordinates.contains(&c));
+        if is_before && own.into_iter().any(|c| locked.contains(&c)) {
+            return false;
+        }
+        slot = node.parent;
+    }
+    true
+}
+
 /// The axes with the six coordinates at zero and the others as in `q`.
 pub(super) fn axes(
     chain: &mut Chain,

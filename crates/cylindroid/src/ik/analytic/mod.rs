@@ -23,7 +23,7 @@ use std::fmt;
 use std::ops::Deref;
 
 use self::geometry::{ArmParameters, Three};
-use self::joints::{are_revolute, axes};
+use self::joints::{are_beyond, are_revolute, axes};
 use self::pieper::Target;
 use self::subproblems::Angle;
 use crate::error::{Error, Result};
@@ -31,7 +31,7 @@ use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::{Damped, DampedProblem, Matrix};
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
-use crate::spatial::{Pose, Rotation, Twist};
+use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::{
     ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED, ANALYTIC_SAME,
 };
@@ -120,6 +120,10 @@ pub struct Analytic {
     /// Indices of the six joints in `q`, and of the locked joints of the chain.
     coordinates: [usize; 6],
     locked: Vec<usize>,
+    /// True if the locked joints move the tool alone, none of the six axes.
+    is_beyond: bool,
+    /// Origin of the tool with the six joints at zero (m).
+    tool: Vec3,
     lower: [f64; 6],
     upper: [f64; 6],
     reach: f64,
@@ -200,10 +204,12 @@ impl Analytic {
         Ok(Self {
             geometry: axes.geometry(structure, reach),
             zero: chain.pose().rotation,
+            tool: axes.tool,
             chain,
             structure,
             departure,
             coordinates,
+            is_beyond: are_beyond(mechanism, end_effector, &coordinates, &locked),
             locked,
             lower: limits.map(|l| l.lower),
             upper: limits.map(|l| l.upper),
@@ -246,37 +252,8 @@ impl Analytic {
     /// # Errors
     /// A `start` of the wrong size, non-finite values.
     pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<AnalyticSolutions> {
-        self.solve_with(target, start, |_, _| {})
-    }
-
-    /// The same; candidates that only the limits exclude go to `excluded`, clamped to them, with
-    /// their largest displacement (rad).
-    pub(super) fn solve_with(
-        &mut self,
-        target: Pose,
-        start: &[f64],
-        mut excluded: impl FnMut([f64; 6], f64),
-    ) -> Result<AnalyticSolutions> {
         self.check(target, start)?;
-        if self.locked.iter().any(|&c| self.q[c] != start[c]) {
-            self.lock(start);
-        }
-        self.q.copy_from_slice(start);
-        let rotation = target.rotation.matrix() * self.zero.inverse().matrix();
         let near = self.coordinates.map(|c| start[c]);
-        let ArmGeometry { three, reversed, .. } = self.structure;
-        let mut angles = near;
-        let mut aim = Target { rotation, position: target.translation, start: near };
-        if reversed {
-            angles.reverse();
-            let back = rotation.transpose();
-            (aim.rotation, aim.position) = (back, -(back * target.translation));
-        }
-        let geometry = self.geometry;
-        for (angle, sign) in angles.iter_mut().zip(geometry.sign) {
-            *angle *= sign;
-        }
-        aim.start = angles;
         let mut solutions = AnalyticSolutions {
             list: [AnalyticSolution {
                 q: [0.0; 6],
@@ -287,6 +264,44 @@ impl Analytic {
             len: 0,
             open: false,
         };
+        self.candidates(target, start, |analytic, q, free| {
+            solutions.open |= free != [false; 6];
+            let solution = analytic.confirmed(q, free, &target, &near);
+            solution.is_some_and(|solution| {
+                solutions.insert(solution);
+                true
+            })
+        });
+        Ok(solutions)
+    }
+
+    /// Calls `found` with the candidates of the closed form for input that was checked, each with
+    /// the joints that the pose leaves free: neither wrapped nor verified. `found` returns whether
+    /// the candidate is a solution.
+    pub(super) fn candidates(
+        &mut self,
+        target: Pose,
+        start: &[f64],
+        mut found: impl FnMut(&mut Self, [f64; 6], [bool; 6]) -> bool,
+    ) {
+        if self.locked.iter().any(|&c| self.q[c] != start[c]) {
+            self.lock(start);
+        }
+        self.q.copy_from_slice(start);
+        let rotation = target.rotation.matrix() * self.zero.inverse().matrix();
+        let ArmGeometry { three, reversed, .. } = self.structure;
+        let mut angles = self.coordinates.map(|c| start[c]);
+        let mut aim = Target { rotation, position: target.translation, start: angles };
+        if reversed {
+            angles.reverse();
+            let back = rotation.transpose();
+            (aim.rotation, aim.position) = (back, -(back * target.translation));
+        }
+        let geometry = self.geometry;
+        for (angle, sign) in angles.iter_mut().zip(geometry.sign) {
+            *angle *= sign;
+        }
+        aim.start = angles;
         let found = |turns: &[Angle; 6]| {
             let mut q = [0.0; 6];
             let mut free = [false; 6];
@@ -295,22 +310,30 @@ impl Analytic {
                 q[place] = turn.angle * geometry.sign[i];
                 free[place] = turn.free;
             }
-            solutions.open |= free != [false; 6];
-            let Some(solution) = self.confirmed(q, free, &target, &near) else {
-                let (clamped, most) = clamped(q, &near, (&self.lower, &self.upper));
-                if most > 0.0 {
-                    excluded(clamped, most);
-                }
-                return false;
-            };
-            solutions.insert(solution);
-            true
+            found(self, q, free)
         };
         match three {
             Three::Meet => pieper::meeting(&geometry, &aim, found),
             Three::Parallel => pieper::parallel(&geometry, &aim, found),
         }
-        Ok(solutions)
+    }
+
+    /// The angles wrapped to the values closest to `near`, then clamped to the limits, each by as
+    /// little as full turns permit; and the largest displacement (rad).
+    pub(super) fn clamped(&self, angles: [f64; 6], near: &[f64; 6]) -> ([f64; 6], f64) {
+        let (mut q, mut most) = (angles, 0.0_f64);
+        for i in 0..6 {
+            let (lower, upper) = (self.lower[i], self.upper[i]);
+            let within = turned(angles[i], near[i], lower, upper);
+            let turned = within.unwrap_or_else(|| {
+                angles[i] + TAU * ((0.5 * (lower + upper) - angles[i]) / TAU).round()
+            });
+            q[i] = clamp(turned, lower, upper);
+            if within.is_none() {
+                most = most.max((q[i] - turned).abs());
+            }
+        }
+        (q, most)
     }
 
     /// A solution with all full turns that the limits permit, itself included; joints without
@@ -339,7 +362,7 @@ impl Analytic {
         all
     }
 
-    fn check(&self, target: Pose, start: &[f64]) -> Result<()> {
+    pub(super) fn check(&self, target: Pose, start: &[f64]) -> Result<()> {
         Error::check_len("start", self.q.len(), start.len())?;
         Error::check_finite("start", start)?;
         Error::check_finite("target position", &target.translation.to_array())?;
@@ -353,15 +376,26 @@ impl Analytic {
     fn lock(&mut self, start: &[f64]) {
         self.q.copy_from_slice(start);
         self.coordinates.iter().for_each(|&c| self.q[c] = 0.0);
+        if self.is_beyond {
+            let before = self.tool;
+            let Pose { rotation, translation } = self.chain.set(&self.q);
+            (self.zero, self.tool) = (rotation, translation);
+            let p = &mut self.geometry.p;
+            match self.structure.reversed {
+                false => p[6] += translation - before,
+                true => p[0] -= translation - before,
+            }
+            return;
+        }
         let axes = axes(&mut self.chain, &self.coordinates, &self.q, &mut self.jacobian);
         if let Some(axes) = axes {
-            self.zero = self.chain.pose().rotation;
+            (self.zero, self.tool) = (self.chain.pose().rotation, axes.tool);
             self.geometry = axes.geometry(self.structure, self.reach);
         }
     }
 
     /// The verified solution within the limits, if there is one.
-    fn confirmed(
+    pub(super) fn confirmed(
         &mut self,
         mut q: [f64; 6],
         free: [bool; 6],
@@ -473,24 +507,4 @@ fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
         q += TAU * ((lower - q - ANALYTIC_AT_LIMIT) / TAU).ceil();
     }
     (q >= lower - ANALYTIC_AT_LIMIT && q <= upper + ANALYTIC_AT_LIMIT).then_some(q)
-}
-
-/// The angles clamped to the limits, each by as little as full turns permit, and the largest
-/// displacement.
-fn clamped(
-    angles: [f64; 6],
-    near: &[f64; 6],
-    (lower, upper): (&[f64; 6], &[f64; 6]),
-) -> ([f64; 6], f64) {
-    let (mut q, mut most) = (angles, 0.0_f64);
-    for i in 0..6 {
-        q[i] = turned(angles[i], near[i], lower[i], upper[i]).unwrap_or_else(|| {
-            let turns = ((0.5 * (lower[i] + upper[i]) - angles[i]) / TAU).round();
-            let turned = angles[i] + TAU * turns;
-            let q = clamp(turned, lower[i], upper[i]);
-            most = most.max((q - turned).abs());
-            q
-        });
-    }
-    (q, most)
 }

@@ -5,7 +5,7 @@
 //!          Axes 4, 5, 6 intersect, u = p45 = p56 = 0 (x angle 1, y angle 3):
 //!          h2 . R1^T p - h2 . R3 p34 = h2 . (p12 + p23),
 //!          2 p12 . R1^T p + 2 p23 . R3 p34 = p^2 + p12^2 - p23^2 - p34^2, then angle 2 from one
-//!          vector, and the wrist: h4 . R5 h6 = h4 . M h6, M = (R1 R2 R3)^T R.
+//!          vector, and the wrist: h4 . R5 h6 = h4 . R3^T R2^T R1^T R h6.
 //!          Axes 2, 3, 4 parallel (x angle 1, y angle 5):
 //!          h2 . R1^T p - h2 . R5 p56 = h2 . (p12 + p23 + p34 + p45),
 //!          h2 . R1^T R h6 - h2 . R5 h6 = 0, then the angle 2 + 3 + 4 from one vector, and 2 and 3
@@ -50,13 +50,14 @@ pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[A
         start: [start[0], start[2]],
     };
     let (wrist, wrist_rest) = coefficients(h[3], h[4], h[5]);
+    let (pointing, sideways) = (aim.rotation * h[5], aim.rotation * g.side);
     pair.any(g.order, |first, third| {
         let inner = p23 + third.of(h[2], p34);
         let outer = first.back(h[0], p) - p12;
+        let (pointing, sideways) = (first.back(h[0], pointing), first.back(h[0], sideways));
         onto(h[1], inner, outer, reach, start[1]).any(|second| {
-            let arm = first.matrix(h[0]) * second.matrix(h[1]) * third.matrix(h[2]);
-            let hand = arm.transpose() * aim.rotation;
-            let (pointing, sideways) = (hand * h[5], hand * g.side);
+            let behind = |v| third.back(h[2], second.back(h[1], v));
+            let (pointing, sideways) = (behind(pointing), behind(sideways));
             linear(wrist, h[3].dot(pointing) - wrist_rest, 1.0, start[4]).any(|fifth| {
                 let from = fifth.of(h[4], h[5]);
                 onto(h[3], from, pointing, 1.0, start[3]).any(|fourth| {
