@@ -19,14 +19,18 @@ fn number(variable: &str, missing: u64) -> u64 {
     std::env::var(variable).map_or(missing, |text| text.parse().unwrap())
 }
 
-/// `CYLINDROID_LIMIT_STEPS` steps (10 million), from round `CYLINDROID_LIMIT_SEED` on. Every round
-/// is random with its own number as seed, so that it can be run again alone.
+/// `CYLINDROID_LIMIT_STEPS` steps (10 million), from round `CYLINDROID_LIMIT_SEED` on, of the kind
+/// `CYLINDROID_LIMIT_KIND` (all). Every round is random with its own number as seed, so that it can be
+/// run again alone.
 #[test]
 #[ignore = "takes minutes; run by cargo xtask limits"]
 fn no_limit_is_left() {
     let most = number("CYLINDROID_LIMIT_STEPS", 10_000_000);
     let (round, steps) = (AtomicU64::new(number("CYLINDROID_LIMIT_SEED", 0)), AtomicU64::new(0));
     let tallies = Mutex::new([(); Kind::ALL.len()].map(|()| Tally::default()));
+    let only = std::env::var("CYLINDROID_LIMIT_KIND").ok();
+    let is_chosen = |kind: Kind| only.as_ref().is_none_or(|only| only == kind.name());
+    assert!(Kind::ALL.into_iter().any(is_chosen), "no kind {only:?}");
     let start = Instant::now();
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
@@ -34,6 +38,9 @@ fn no_limit_is_left() {
                 while steps.load(Ordering::Relaxed) < most {
                     let seed = round.fetch_add(1, Ordering::Relaxed);
                     let kind = Kind::of(seed);
+                    if !is_chosen(kind) {
+                        continue;
+                    }
                     let work = AssertUnwindSafe(|| rounds::run(kind, seed));
                     let tally = catch_unwind(work).unwrap_or_else(|_| Tally::panicked(seed));
                     steps.fetch_add(tally.steps, Ordering::Relaxed);

@@ -235,6 +235,57 @@ pub(crate) fn five_bar(random: &mut Random<'_>) -> Mechanism {
     builder.build().unwrap()
 }
 
+/// A spatial loop with shapes on all links: two chains of revolute joints that a hinge, a ball or a
+/// clamp closes, with as many drives as degrees of freedom, from both bases on.
+pub(crate) fn spatial_loop(random: &mut Random<'_>) -> Mechanism {
+    let mut builder = Mechanism::builder("loop");
+    let (kind, constraints) =
+        [(JointKind::Revolute, 5), (JointKind::Spherical, 3), (JointKind::Fixed, 6)]
+            [random.below(3)];
+    let freedom = 1 + random.below(3);
+    let joints = constraints + freedom;
+    let counts = [joints / 2, joints - joints / 2];
+    let mut ends = [Pose::IDENTITY; 2];
+    for (chain, leg) in ["a", "b"].into_iter().enumerate() {
+        for i in 0..counts[chain] {
+            let link = format!("{leg}{}", i + 1);
+            let parent = if i == 0 { "base".to_owned() } else { format!("{leg}{i}") };
+            let mut place = random.pose(0.25);
+            if i == 0 {
+                place.translation.x += if chain == 0 { -0.5 } else { 0.5 };
+            }
+            // Drives take turns: the first of one chain, the first of the other, ...
+            let actuated = 2 * i + chain < freedom;
+            let (velocity, acceleration) = (random.power(-0.5, 0.7), random.power(0.0, 2.0));
+            let limits = Limits { velocity, acceleration, ..Limits::NONE };
+            builder.joint(JointSpec {
+                parent_from_joint: place,
+                axis: random.vec3(1.0),
+                limits: if actuated { limits } else { Limits::NONE },
+                actuated,
+                ..JointSpec::new(&format!("q_{link}"), JointKind::Revolute, &parent, &link)
+            });
+            let collision = Collision {
+                geometry: Geometry::Capsule { radius: random.within(0.02, 0.05), length: 0.1 },
+                ..Collision::default()
+            };
+            builder.link(Link { collisions: vec![collision], ..Link::named(&link) });
+            ends[chain] = ends[chain] * place;
+        }
+    }
+    // Closed where all joints are at zero.
+    let meeting =
+        Pose { translation: (ends[0].translation + ends[1].translation) * 0.5, ..random.pose(0.0) };
+    let last = [format!("a{}", counts[0]), format!("b{}", counts[1])];
+    builder.loop_joint(LoopJointSpec {
+        link_a_from_joint: ends[0].inverse() * meeting,
+        link_b_from_joint: ends[1].inverse() * meeting,
+        ..LoopJointSpec::new("meeting", kind, &last[0], &last[1])
+    });
+    builder.frame("tip", &last[0], ends[0].inverse() * meeting).tool("tip").reference("tip");
+    builder.build().unwrap_or_else(|_| five_bar(random))
+}
+
 /// A model of the catalogue, serial or with loops.
 pub(crate) fn of_catalogue(random: &mut Random<'_>, closed: bool) -> Mechanism {
     let names = catalogue::names();

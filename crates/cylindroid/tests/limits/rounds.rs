@@ -10,7 +10,7 @@ use cylindroid::inverse::Method;
 use cylindroid::model::{Geometry, JointLimits};
 use cylindroid::{Mechanism, Pose, Servo, ServoOptions, State};
 
-use crate::robots::{ClampTo, Random, five_bar, of_catalogue, robot};
+use crate::robots::{ClampTo, Random, five_bar, of_catalogue, robot, spatial_loop};
 use crate::watch::{Tally, Watch};
 
 /// Steps of a round; few where a fuzzer chooses them.
@@ -29,10 +29,11 @@ pub(crate) enum Kind {
     Tasks,
     Distances,
     ClosedDistances,
+    SpatialDistances,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::Catalogue,
         Self::Random,
         Self::Jerks,
@@ -40,6 +41,7 @@ impl Kind {
         Self::Tasks,
         Self::Distances,
         Self::ClosedDistances,
+        Self::SpatialDistances,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -51,6 +53,7 @@ impl Kind {
             Self::Tasks => "many tasks",
             Self::Distances => "distances",
             Self::ClosedDistances => "distances of five-bars",
+            Self::SpatialDistances => "distances, spatial",
         }
     }
 
@@ -62,7 +65,8 @@ impl Kind {
             15 => Self::Closed,
             16..18 => Self::Tasks,
             18 => Self::Distances,
-            _ => Self::ClosedDistances,
+            _ if seed / 20 % 2 == 1 => Self::ClosedDistances,
+            _ => Self::SpatialDistances,
         }
     }
 }
@@ -106,7 +110,14 @@ fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
         Kind::Tasks if random.once_in(5) => closed_tasks(random),
         Kind::Tasks => many_tasks(&robot(random, false), random),
         Kind::Distances => distances(&robot(random, true), random),
-        Kind::ClosedDistances => closed_distances(random),
+        Kind::ClosedDistances => {
+            let robot = five_bar(random);
+            closed_distances(&robot, 0.02, random)
+        }
+        Kind::SpatialDistances => {
+            let robot = spatial_loop(random);
+            closed_distances(&robot, 1.0, random)
+        }
     };
     tally.rounds = 1;
     tally
@@ -372,7 +383,7 @@ fn among_obstacles(robot: &Mechanism, height: f64, random: &mut Random<'_>) -> C
     model
 }
 
-/// The least actuated share of all motions of a five-bar away from type II singularities [-].
+/// The least actuated share of all motions of a closed chain away from type II singularities [-].
 const SHARE: f64 = 0.05;
 
 /// The least distance that a servo is to keep (m).
@@ -446,19 +457,18 @@ fn distances(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     tally
 }
 
-/// A five-bar among obstacles in its plane.
-fn closed_distances(random: &mut Random<'_>) -> Tally {
-    let robot = five_bar(random);
-    let model = among_obstacles(&robot, 0.02, random);
+/// A closed chain among obstacles, at most so far above and below the plane x-y.
+fn closed_distances(robot: &Mechanism, height: f64, random: &mut Random<'_>) -> Tally {
+    let model = among_obstacles(robot, height, random);
     let mut watched = Distances::new(model.clone());
     let mut q = robot.home().to_vec();
     if !watched.is_free(&robot.state(&q).unwrap()) {
         return Tally::default();
     }
-    let mut options = TaskServoOptions::new(&robot);
+    let mut options = TaskServoOptions::new(robot);
     options.dt = random.power(-3.3, -2.3);
     options.collisions = Some(CollisionAvoidance { model, gap: GAP, margin: 5.0 });
-    let Ok(servo) = TaskServo::new(&robot, tasks(&robot, &q, random), options) else {
+    let Ok(servo) = TaskServo::new(robot, tasks(robot, &q, random), options) else {
         return Tally::default();
     };
     let mut is_controlled = true;
