@@ -1,10 +1,12 @@
 //! Braking without contact: what is looked at before a velocity is commanded.
 
+use std::f64::consts::PI;
+
 use cylindroid::collision::{CollisionModel, CollisionOptions, NearPair};
 use cylindroid::control::{
     CollisionAvoidance, MotionTask, StoppedBy, Task, TaskObjective, TaskServo, TaskServoOptions,
 };
-use cylindroid::model::{Collision, Geometry, JointKind, JointSpec, Limits, Link};
+use cylindroid::model::{Collision, Geometry, JointKind, JointSpec, Limits, Link, LoopJointSpec};
 use cylindroid::{Mechanism, Pose, Rotation, Vec3};
 
 /// A ball of 5 cm on two slides, x and y, of unequal drives.
@@ -159,6 +161,112 @@ fn the_way_into_a_wedge_depends_on_no_frame_and_no_unit() {
     };
     for (world, size) in [(elsewhere, 1.0), (Pose::IDENTITY, 1e-3), (elsewhere, 40.0)] {
         let other = way_into_the_wedge(world, size);
+        for (step, (a, b)) in own.iter().zip(&other).enumerate() {
+            let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-6, "step {step} at {size}: {apart:e}");
+        }
+    }
+}
+
+/// A five-bar of drives of unequal accelerations, and two posts that its elbows and its tip meet on
+/// their way. Lengths are `size` times those in metres, and all of it stands at `world`.
+fn five_bar_between_posts(world: Pose, size: f64) -> (Mechanism, CollisionModel) {
+    let mut builder = Mechanism::builder("five-bar between posts");
+    let (lower, upper, width, meeting) = (0.4_f64, 0.5_f64, 0.6, Vec3::new(0.3, 0.7, 0.0));
+    let (mut home, mut ends) = (Vec::new(), Vec::new());
+    for (leg, x, side, acceleration) in [("a", 0.0, 1.0, 8.0), ("b", width, -1.0, 2.0)] {
+        let base = Vec3::new(x, 0.0, 0.0);
+        let way = meeting - base;
+        let far = way.norm();
+        let shoulder = ((far * far + lower * lower - upper * upper) / (2.0 * far * lower)).acos();
+        let elbow = ((lower * lower + upper * upper - far * far) / (2.0 * lower * upper)).acos();
+        home.extend([way.y.atan2(way.x) + side * shoulder, side * (elbow - PI)]);
+        let links = [format!("{leg}1"), format!("{leg}2")];
+        for (i, (length, at)) in [(lower, base), (upper, Vec3::X * lower)].into_iter().enumerate() {
+            let place = Pose::from_translation(at * size);
+            let limits = Limits { velocity: 4.0, acceleration, ..Limits::NONE };
+            builder.joint(JointSpec {
+                parent_from_joint: if i == 0 { world * place } else { place },
+                limits: if i == 0 { limits } else { Limits::NONE },
+                actuated: i == 0,
+                ..JointSpec::new(
+                    &format!("q_{}", links[i]),
+                    JointKind::Revolute,
+                    if i == 0 { "base" } else { &links[0] },
+                    &links[i],
+                )
+            });
+            let bar = Geometry::Box { size: Vec3::new(0.7 * length, 0.04, 0.04) * size };
+            builder.link(Link {
+                collisions: vec![Collision {
+                    geometry: bar,
+                    link_from_shape: Pose::from_translation(Vec3::X * (0.5 * length * size)),
+                    ..Collision::default()
+                }],
+                ..Link::named(&links[i])
+            });
+        }
+        ends.push(Pose::from_translation(Vec3::X * (upper * size)));
+    }
+    builder.loop_joint(LoopJointSpec {
+        link_a_from_joint: ends[0],
+        link_b_from_joint: ends[1],
+        ..LoopJointSpec::new("meeting", JointKind::Revolute, "a2", "b2")
+    });
+    builder.frame("tip", "a2", ends[0]).tool("tip").reference("tip").home(&home);
+    let robot = builder.build().unwrap();
+    let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
+    for (name, x, y, radius) in [("high", 0.52, 0.42, 0.04), ("low", 0.3, 0.35, 0.05)] {
+        let post = Geometry::Cylinder { radius: radius * size, length: size };
+        let place = Pose::from_translation(Vec3::new(x, y, 0.0) * size);
+        model.add_obstacle(name, &post, world * place).unwrap();
+    }
+    (robot, model)
+}
+
+/// The way of the five-bar towards a point behind the posts, step by step, in angles; and the least
+/// distance on it in units of `size`.
+fn way_between_posts(world: Pose, size: f64) -> (Vec<Vec<f64>>, f64) {
+    let (robot, mut model) = five_bar_between_posts(world, size);
+    let mut options = TaskServoOptions::new(&robot);
+    options.dt = 2e-3;
+    options.length = size;
+    let (gap, margin) = (0.002 * size, 0.1 * size);
+    options.collisions = Some(CollisionAvoidance { model: model.clone(), gap, margin });
+    let goal = Pose::from_translation(Vec3::new(0.7, 0.35, 0.0) * size);
+    let objective = TaskObjective::Frame {
+        end_effector: robot.tool().into(),
+        components: Task::POSITION,
+        target: (world * goal).into(),
+    };
+    let mut task = MotionTask { gain: 20.0, ..MotionTask::new("tip", objective) };
+    task.tolerance.position *= size;
+    let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
+    let mut q = robot.home().to_vec();
+    let (mut near, mut way, mut least) = (Vec::new(), Vec::new(), f64::INFINITY);
+    for _ in 0..1500 {
+        servo.step(&q).unwrap();
+        servo.advance(&mut q);
+        model.near(&robot.state(&q).unwrap(), size, &mut near).unwrap();
+        least = near.iter().map(|near| near.distance / size).fold(least, f64::min);
+        assert!(least > 0.0, "{near:?} at {q:?}");
+        way.push(q.clone());
+    }
+    (way, least)
+}
+
+/// The links of a closed chain are stopped at the same places in every frame and unit of length.
+#[test]
+fn the_way_of_a_closed_chain_between_posts_depends_on_no_frame_and_no_unit() {
+    let (own, least) = way_between_posts(Pose::IDENTITY, 1.0);
+    // It came as near as it may.
+    assert!(least < 0.01, "{least}");
+    let elsewhere = Pose {
+        rotation: Rotation::exp(Vec3::new(0.4, -1.1, 0.7)),
+        translation: Vec3::new(0.3, -0.2, 0.5),
+    };
+    for (world, size) in [(elsewhere, 1.0), (Pose::IDENTITY, 1e-3), (elsewhere, 40.0)] {
+        let (other, _) = way_between_posts(world, size);
         for (step, (a, b)) in own.iter().zip(&other).enumerate() {
             let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(apart < 1e-6, "step {step} at {size}: {apart:e}");
