@@ -16,11 +16,11 @@
 mod geometry;
 mod joints;
 mod pieper;
+mod solutions;
 mod subproblems;
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
-use std::ops::Deref;
 
 use self::geometry::{ArmParameters, Three};
 use self::joints::{are_beyond, are_revolute, axes};
@@ -32,11 +32,10 @@ use crate::linalg::{Damped, DampedProblem, Matrix};
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
-use crate::tolerance::{
-    ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED, ANALYTIC_SAME,
-};
+use crate::tolerance::{ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED};
 
 pub use self::geometry::ArmGeometry;
+pub use self::solutions::{AnalyticSolution, AnalyticSolutions};
 
 /// Newton steps per candidate.
 const STEPS: usize = 2;
@@ -72,37 +71,6 @@ impl fmt::Display for NotSolvable {
             ),
             Self::Foreign => f.write_str("the frame is one of another mechanism"),
         }
-    }
-}
-
-/// One solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AnalyticSolution {
-    /// The angles of the six joints, in the order of [`Analytic::coordinates`] (rad).
-    pub q: [f64; 6],
-    /// True for joints whose angle the pose leaves free: the configuration is singular, one of a
-    /// continuum of solutions. The angle is that of the initial guess, or one that the other joints
-    /// permit.
-    pub free: [bool; 6],
-    /// (m)
-    pub position_error: f64,
-    /// (rad)
-    pub orientation_error: f64,
-}
-
-/// The solutions for a pose: at most eight.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AnalyticSolutions {
-    list: [AnalyticSolution; 8],
-    len: usize,
-    open: bool,
-}
-
-impl Deref for AnalyticSolutions {
-    type Target = [AnalyticSolution];
-
-    fn deref(&self) -> &[AnalyticSolution] {
-        &self.list[..self.len]
     }
 }
 
@@ -254,18 +222,9 @@ impl Analytic {
     pub fn solve(&mut self, target: Pose, start: &[f64]) -> Result<AnalyticSolutions> {
         self.check(target, start)?;
         let near = self.coordinates.map(|c| start[c]);
-        let mut solutions = AnalyticSolutions {
-            list: [AnalyticSolution {
-                q: [0.0; 6],
-                free: [false; 6],
-                position_error: 0.0,
-                orientation_error: 0.0,
-            }; 8],
-            len: 0,
-            open: false,
-        };
+        let mut solutions = AnalyticSolutions::NONE;
         self.candidates(target, start, |analytic, q, free| {
-            solutions.open |= free != [false; 6];
+            solutions.note_free(&free);
             let solution = analytic.confirmed(q, free, &target, &near);
             solution.is_some_and(|solution| {
                 solutions.insert(solution);
@@ -464,34 +423,6 @@ impl Analytic {
         let problem = DampedProblem { a: &self.a, e: &e, clamped: free, damping: DAMPING * size };
         if self.damped.solve(problem, &mut d) {
             q.iter_mut().zip(d).for_each(|(q, d)| *q += d);
-        }
-    }
-}
-
-impl AnalyticSolutions {
-    /// True if the pose may leave a joint free: there are then further solutions.
-    #[must_use]
-    pub fn is_open(&self) -> bool {
-        self.open
-    }
-
-    /// Adds a new solution, up to full turns; of two equal ones the more accurate.
-    fn insert(&mut self, solution: AnalyticSolution) {
-        let same = |other: &AnalyticSolution| {
-            other.q.iter().zip(solution.q).all(|(a, b)| {
-                let apart = (a - b).abs();
-                let turned = |apart: f64| (apart - TAU * (apart / TAU).round()).abs();
-                apart < ANALYTIC_SAME || (apart > PI && turned(apart) < ANALYTIC_SAME)
-            })
-        };
-        let error = |p: &AnalyticSolution| p.position_error + p.orientation_error;
-        if let Some(other) = self.list[..self.len].iter_mut().find(|other| same(other)) {
-            if error(&solution) < error(other) {
-                *other = solution;
-            }
-        } else if self.len < self.list.len() {
-            self.list[self.len] = solution;
-            self.len += 1;
         }
     }
 }
