@@ -10,6 +10,7 @@ use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::model::Coordinate;
 use cylindroid::{EndEffector, Mechanism, Vec3, catalogue};
 
+const ARMS: [&str; 4] = ["panda", "iiwa14", "ur5e", "puma560"];
 /// Targets of a row of the table.
 const TARGETS: usize = 400;
 /// Targets of the comparison with many starts, and its starts.
@@ -20,9 +21,12 @@ fn main() {
     let named = std::env::args().skip(1).filter(|a| !a.starts_with("--"));
     let (files, robots): (Vec<_>, Vec<_>) = named.partition(|name| name.contains(':'));
     let is_chosen = |name: &str| robots.is_empty() || robots.iter().any(|robot| robot == name);
+    for robot in &robots {
+        assert!(ARMS.contains(&robot.as_str()), "{robot}: none of {ARMS:?}");
+    }
     println!("| robot | targets | solved | median [us] | 99 % [us] | most [us] |");
     println!("|---|---|---:|---:|---:|---:|");
-    for name in ["panda", "iiwa14", "ur5e", "puma560"].into_iter().filter(|name| is_chosen(name)) {
+    for name in ARMS.into_iter().filter(|name| is_chosen(name)) {
         let robot = catalogue::load(name).unwrap();
         let tool = robot.tool();
         rows(name, &robot, tool.into());

@@ -21,7 +21,7 @@ const MARGIN: f64 = 0.3;
 /// The same for segments between ends of branches [rad].
 const SEGMENT_MARGIN: f64 = 0.1;
 
-/// A solution for one value of the locked joint.
+/// A candidate for one value of the locked joint, a solution up to rounding if it is within the limits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     pub(super) value: f64,

@@ -4,8 +4,8 @@
 //! Method   one restart from the preferred configuration; then the locked joint of the closed form
 //!          is sampled outwards from its preferred value, until its own displacement exceeds the
 //!          distance of the best solution, and more finely where branches end. Solutions that are closer than their neighbours on the
-//!          same branch, and points between ends of branches (`branches.rs`), are the start of a
-//!          descent along the self-motion, in the order of their distance, as long as it can come
+//!          same branch, and points between ends of branches (`branches.rs`), are corrected by a few
+//!          Newton steps and are the start of a descent along the self-motion, in the order of their distance, as long as it can come
 //!          closer than the best: the distance changes by no more than the configuration.
 //! Valid    branches and gaps shorter than a sampling step may be missed
 //! Why so   the samples cover all branches for the price of a few random restarts, which reach some
@@ -30,6 +30,8 @@ const NEARLY_WITHIN: f64 = 0.3;
 /// Gaps between values with different numbers of solutions are halved down to this [rad]: branches
 /// end there, and swing by the root of what is left.
 const FINEST: f64 = 0.01;
+/// Steps from a sample to a solution: it may be beside a branch, or outside of half-spaces.
+const CORRECTIONS: usize = 12;
 /// Largest number of descents.
 const MAX_DESCENTS: usize = 40;
 
@@ -122,8 +124,9 @@ impl Solver {
         q.copy_from_slice(&self.start);
         formulas.analytic.check(target, &q)?;
         let (mut best, mut calls) = (closest * closest, 0);
-        // Every sample is a solution.
+        // A solution needs no further test.
         let is_accepted = self.avoidance.is_none() && self.problem.half_spaces.is_empty();
+        let near = places.map(|c| q[c]);
         let (mut k, mut gap) = (0, 0);
         let mut is_outward = true;
         while calls < most {
@@ -162,11 +165,14 @@ impl Solver {
                 Sample { value, angles, far, excluded }
             };
             let (first, mut count) = (samples.all.len(), 0);
-            let near = places.map(|c| q[c]);
             formulas.analytic.candidates(target, &q, |analytic, angles, free| {
                 let (angles, excluded) = analytic.clamped(angles, &near);
                 let mut candidate = sample(angles, excluded);
-                // A start of a descent need not be verified, the closest one ends the sampling.
+                if !candidate.far.is_finite() {
+                    return false;
+                }
+                // Only the closest one is verified, as its distance bounds the search; starts of
+                // descents are corrected.
                 let is_closest = is_accepted && candidate.far < best;
                 if excluded == 0.0 && (is_closest || !is_exact || free != [false; 6]) {
                     let Some(found) = analytic.confirmed(angles, free, &target, &near) else {
@@ -199,12 +205,9 @@ impl Solver {
             for (c, angle) in places.into_iter().zip(sample.angles) {
                 q[c] = angle;
             }
-            if sample.excluded > 0.0 || !self.problem.half_spaces.is_empty() {
-                // Beside a branch, or outside of half-spaces.
-                let (errors, _) = self.problem.run(&mut q, &self.options, 12);
-                if !is_reached(errors, &self.options) {
-                    continue;
-                }
+            let (errors, _) = self.problem.run(&mut q, &self.options, CORRECTIONS);
+            if !is_reached(errors, &self.options) {
+                continue;
             }
             self.approach_preferred(&mut q, closest * closest);
             if self.add(solutions, &mut q, FoundBy::Analytic)? {

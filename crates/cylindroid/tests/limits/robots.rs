@@ -283,7 +283,7 @@ pub(crate) fn spatial_loop(random: &mut Random<'_>) -> Mechanism {
         ..LoopJointSpec::new("meeting", kind, &last[0], &last[1])
     });
     builder.frame("tip", &last[0], ends[0].inverse() * meeting).tool("tip").reference("tip");
-    builder.build().unwrap_or_else(|_| five_bar(random))
+    builder.build().unwrap()
 }
 
 /// A model of the catalogue, serial or with loops.

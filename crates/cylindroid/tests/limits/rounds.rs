@@ -53,7 +53,7 @@ impl Kind {
             Self::Tasks => "many tasks",
             Self::Distances => "distances",
             Self::ClosedDistances => "distances of five-bars",
-            Self::SpatialDistances => "distances, spatial",
+            Self::SpatialDistances => "distances of spatial loops",
         }
     }
 
@@ -395,11 +395,12 @@ struct Distances {
     near: Vec<NearPair>,
     nearest: f64,
     below_gap: u64,
+    looks: u64,
 }
 
 impl Distances {
     fn new(model: CollisionModel) -> Self {
-        Self { model, near: Vec::new(), nearest: f64::INFINITY, below_gap: 0 }
+        Self { model, near: Vec::new(), nearest: f64::INFINITY, below_gap: 0, looks: 0 }
     }
 
     /// All pairs have more than the gap.
@@ -412,6 +413,7 @@ impl Distances {
         if !step.is_multiple_of(LOOK) {
             return Ok(());
         }
+        self.looks += 1;
         self.model.near(state, GAP, &mut self.near).unwrap();
         let Some(least) = self.near.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
             return Ok(());
@@ -426,7 +428,7 @@ impl Distances {
     }
 
     fn add_to(self, tally: &mut Tally) {
-        tally.below_gap = self.below_gap;
+        (tally.looks, tally.below_gap) = (self.looks, self.below_gap);
         tally.nearest = self.nearest.is_finite().then_some(self.nearest);
     }
 }

@@ -13,7 +13,9 @@ pub(crate) struct Tally {
     pub(crate) pushes: u64,
     /// Steps in which a coordinate was at a bound of its position.
     pub(crate) at_limits: u64,
-    /// Steps in which a watched pair of bodies was nearer than the gap.
+    /// Steps after which the distances of all bodies were looked at.
+    pub(crate) looks: u64,
+    /// Those in which a watched pair of bodies was nearer than the gap.
     pub(crate) below_gap: u64,
     /// The least distance of bodies that started apart (m).
     pub(crate) nearest: Option<f64>,
@@ -33,6 +35,7 @@ impl Tally {
         self.steps += other.steps;
         self.pushes += other.pushes;
         self.at_limits += other.at_limits;
+        self.looks += other.looks;
         self.below_gap += other.below_gap;
         self.errors += other.errors;
         self.nearest = [self.nearest, other.nearest].into_iter().flatten().reduce(f64::min);
@@ -42,14 +45,17 @@ impl Tally {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { rounds, steps, pushes, at_limits, below_gap, errors, .. } = self;
+        let Self { rounds, steps, pushes, at_limits, looks, below_gap, errors, .. } = self;
         write!(
             f,
             "{rounds} rounds, {steps} steps, {pushes} pushes, {at_limits} steps at a position \
              limit, {errors} errors"
         )?;
+        if *looks > 0 {
+            write!(f, ", {looks} looks at distances, {below_gap} below the gap")?;
+        }
         if let Some(nearest) = self.nearest {
-            write!(f, ", {below_gap} steps below the gap, least distance {nearest:.2e} m")?;
+            write!(f, ", least distance {nearest:.2e} m")?;
         }
         write!(f, ", {} violations", self.violations.len())
     }

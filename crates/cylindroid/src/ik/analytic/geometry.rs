@@ -92,6 +92,9 @@ pub(super) struct ArmParameters {
     pub(super) h: [Vec3; 6],
     /// From the base to the first axis, from axis to axis, to the tool.
     pub(super) p: [Vec3; 7],
+    /// The point of the axis next to the tool from which the tool is seen: the last, or the first if
+    /// the chain is read from the tool.
+    end: Vec3,
     /// -1 for axes whose angle has the opposite sign in the closed form.
     pub(super) sign: [f64; 6],
     /// A unit vector perpendicular to the last axis.
@@ -191,6 +194,7 @@ impl Axes {
         ArmParameters {
             h,
             p: [0, 1, 2, 3, 4, 5, 6].map(step),
+            end: if structure.reversed { o[0] } else { o[5] },
             sign,
             side: perpendicular(h[5]),
             level: perpendicular(h[1]),
@@ -202,6 +206,16 @@ impl Axes {
                 (Three::Meet, Two::Meet(2)) => Order::FirstX(1),
                 (Three::Meet, Two::Meet(_)) => Order::FirstY(1),
             },
+        }
+    }
+}
+
+impl ArmParameters {
+    /// The same axes with the tool elsewhere.
+    pub(super) fn set_tool(&mut self, tool: Vec3, reversed: bool) {
+        match reversed {
+            false => self.p[6] = tool - self.end,
+            true => self.p[0] = self.end - tool,
         }
     }
 }

@@ -33,19 +33,19 @@ pub(super) fn are_revolute(
 
 /// True if the locked coordinates move only nodes that follow the six joints: the tool, and none of
 /// their axes.
-pub(super) fn are_beyond(
+pub(super) fn move_tool_only(
     mechanism: &Mechanism,
     end_effector: EndEffector,
     coordinates: &[usize; 6],
     locked: &[usize],
 ) -> bool {
     let mut slot = mechanism.frame_of(end_effector.frame).slot;
-    let mut is_before = false;
+    let mut has_met_six = false;
     while slot > 0 {
         let node = &mechanism.nodes()[slot - 1];
         let own = node.coordinate..node.coordinate + node.kind.dof();
-        is_before |= own.clone().any(|c| coordinates.contains(&c));
-        if is_before && own.into_iter().any(|c| locked.contains(&c)) {
+        has_met_six |= own.clone().any(|c| coordinates.contains(&c));
+        if has_met_six && own.into_iter().any(|c| locked.contains(&c)) {
             return false;
         }
         slot = node.parent;

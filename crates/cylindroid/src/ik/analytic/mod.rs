@@ -23,7 +23,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 use self::geometry::{ArmParameters, Three};
-use self::joints::{are_beyond, are_revolute, axes};
+use self::joints::{are_revolute, axes, move_tool_only};
 use self::pieper::Target;
 use self::subproblems::Angle;
 use crate::error::{Error, Result};
@@ -31,7 +31,7 @@ use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::{Damped, DampedProblem, Matrix};
 use crate::model::Mechanism;
 use crate::scalar::{clamp, uniform};
-use crate::spatial::{Pose, Rotation, Twist, Vec3};
+use crate::spatial::{Pose, Rotation, Twist};
 use crate::tolerance::{ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED};
 
 pub use self::geometry::ArmGeometry;
@@ -89,9 +89,7 @@ pub struct Analytic {
     coordinates: [usize; 6],
     locked: Vec<usize>,
     /// True if the locked joints move the tool alone, none of the six axes.
-    is_beyond: bool,
-    /// Origin of the tool with the six joints at zero (m).
-    tool: Vec3,
+    moves_tool_only: bool,
     lower: [f64; 6],
     upper: [f64; 6],
     reach: f64,
@@ -172,12 +170,11 @@ impl Analytic {
         Ok(Self {
             geometry: axes.geometry(structure, reach),
             zero: chain.pose().rotation,
-            tool: axes.tool,
             chain,
             structure,
             departure,
             coordinates,
-            is_beyond: are_beyond(mechanism, end_effector, &coordinates, &locked),
+            moves_tool_only: move_tool_only(mechanism, end_effector, &coordinates, &locked),
             locked,
             lower: limits.map(|l| l.lower),
             upper: limits.map(|l| l.upper),
@@ -234,14 +231,14 @@ impl Analytic {
         Ok(solutions)
     }
 
-    /// Calls `found` with the candidates of the closed form for input that was checked, each with
-    /// the joints that the pose leaves free: neither wrapped nor verified. `found` returns whether
-    /// the candidate is a solution.
+    /// Calls `visit` with the candidates of the closed form for input that was checked, each with
+    /// the joints that the pose leaves free: neither wrapped nor verified. `visit` returns whether
+    /// the candidate counts as a solution.
     pub(super) fn candidates(
         &mut self,
         target: Pose,
         start: &[f64],
-        mut found: impl FnMut(&mut Self, [f64; 6], [bool; 6]) -> bool,
+        mut visit: impl FnMut(&mut Self, [f64; 6], [bool; 6]) -> bool,
     ) {
         if self.locked.iter().any(|&c| self.q[c] != start[c]) {
             self.lock(start);
@@ -269,7 +266,7 @@ impl Analytic {
                 q[place] = turn.angle * geometry.sign[i];
                 free[place] = turn.free;
             }
-            found(self, q, free)
+            visit(self, q, free)
         };
         match three {
             Three::Meet => pieper::meeting(&geometry, &aim, found),
@@ -284,12 +281,12 @@ impl Analytic {
         for i in 0..6 {
             let (lower, upper) = (self.lower[i], self.upper[i]);
             let within = turned(angles[i], near[i], lower, upper);
-            let turned = within.unwrap_or_else(|| {
+            let closest = within.unwrap_or_else(|| {
                 angles[i] + TAU * ((0.5 * (lower + upper) - angles[i]) / TAU).round()
             });
-            q[i] = clamp(turned, lower, upper);
+            q[i] = clamp(closest, lower, upper);
             if within.is_none() {
-                most = most.max((q[i] - turned).abs());
+                most = most.max((q[i] - closest).abs());
             }
         }
         (q, most)
@@ -335,20 +332,15 @@ impl Analytic {
     fn lock(&mut self, start: &[f64]) {
         self.q.copy_from_slice(start);
         self.coordinates.iter().for_each(|&c| self.q[c] = 0.0);
-        if self.is_beyond {
-            let before = self.tool;
+        if self.moves_tool_only {
             let Pose { rotation, translation } = self.chain.set(&self.q);
-            (self.zero, self.tool) = (rotation, translation);
-            let p = &mut self.geometry.p;
-            match self.structure.reversed {
-                false => p[6] += translation - before,
-                true => p[0] -= translation - before,
-            }
+            self.zero = rotation;
+            self.geometry.set_tool(translation, self.structure.reversed);
             return;
         }
         let axes = axes(&mut self.chain, &self.coordinates, &self.q, &mut self.jacobian);
         if let Some(axes) = axes {
-            (self.zero, self.tool) = (self.chain.pose().rotation, axes.tool);
+            self.zero = self.chain.pose().rotation;
             self.geometry = axes.geometry(self.structure, self.reach);
         }
     }

@@ -32,7 +32,7 @@ pub(super) struct Target {
     pub(super) start: [f64; 6],
 }
 
-/// Calls `found` with the candidates; it returns whether one is verified.
+/// Calls `found` with the candidates; it returns whether one counts as a solution.
 pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[Angle; 6]) -> bool) {
     let ArmParameters { h, p: [p01, p12, p23, p34, _, _, p6t], reach, .. } = *g;
     let start = aim.start;

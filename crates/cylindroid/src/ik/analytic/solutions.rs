@@ -12,7 +12,7 @@ use crate::tolerance::ANALYTIC_SAME;
 /// One solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnalyticSolution {
-    /// The angles of the six joints, in the order of [`Analytic::coordinates`] (rad).
+    /// The angles of the six joints, in the order of [`Analytic::coordinates`](super::Analytic::coordinates) (rad).
     pub q: [f64; 6],
     /// True for joints whose angle the pose leaves free: the configuration is singular, one of a
     /// continuum of solutions. The angle is that of the initial guess, or one that the other joints

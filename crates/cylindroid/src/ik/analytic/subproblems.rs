@@ -94,8 +94,8 @@ impl<const N: usize> Angles<N> {
         self.free.is_some()
     }
 
-    /// Calls `f`, which returns whether a solution was verified, for each angle; returns whether
-    /// any was. Of free angles the first that is verified suffices.
+    /// Calls `f`, which returns whether one counts as a solution, for each angle; returns whether
+    /// any did. Of free angles the first one suffices.
     #[inline]
     pub(super) fn any(&self, mut f: impl FnMut(Angle) -> bool) -> bool {
         if let Some(start) = self.free

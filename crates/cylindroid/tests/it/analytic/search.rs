@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use cylindroid::ik::{Analytic, FoundBy, Goal, IkOptions, NotSolvable, Solver, solve_distinct};
 use cylindroid::model::{JointKind, JointSpec, Limits};
-use cylindroid::{Mechanism, Pose, Vec3, catalogue};
+use cylindroid::{Mechanism, Pose, Rotation, Vec3, catalogue};
 
 use super::arms::{arm, unit};
 use super::law::apart;
@@ -39,6 +39,79 @@ fn seven_joints_with_one_held() {
                 near = near.min(apart(&whole, &q));
             }
             assert!(near < 1e-6, "{name}: {near:e} {q:?} {answers:?}");
+        }
+    }
+}
+
+/// An arm with one more joint than the closed form takes: seven revolute axes, or a slide that
+/// carries the tool, which is off the last axis.
+fn with_a_joint_beyond(seventh: JointKind, is_wrist_last: bool) -> Mechanism {
+    let mut builder = Mechanism::builder("seven");
+    // A spherical wrist, or the same read from the tool: a spherical shoulder.
+    let mut places = [
+        (Vec3::new(0.0, 0.0, 0.3), Vec3::Z),
+        (Vec3::new(0.1, 0.0, 0.1), Vec3::Y),
+        (Vec3::new(0.0, 0.0, 0.4), Vec3::Y),
+        (Vec3::new(0.3, 0.0, 0.05), Vec3::X),
+        (Vec3::ZERO, Vec3::Y),
+        (Vec3::ZERO, Vec3::X),
+    ];
+    if !is_wrist_last {
+        places = [
+            (Vec3::new(0.0, 0.1, 0.3), Vec3::Z),
+            (Vec3::ZERO, Vec3::Y),
+            (Vec3::ZERO, Vec3::Z),
+            (Vec3::new(0.05, 0.0, 0.4), Vec3::Y),
+            (Vec3::new(-0.05, 0.0, 0.3), Vec3::Z),
+            (Vec3::new(0.0, 0.0, 0.1), Vec3::Y),
+        ];
+    }
+    let seventh = (Vec3::new(0.02, 0.05, 0.1), Vec3::new(0.3, -0.2, 1.0), seventh);
+    let six = places.map(|(at, axis)| (at, axis, JointKind::Revolute));
+    for (i, (at, axis, kind)) in six.into_iter().chain([seventh]).enumerate() {
+        builder.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(at),
+            axis,
+            ..JointSpec::new(&format!("q{i}"), kind, &format!("l{i}"), &format!("l{}", i + 1))
+        });
+    }
+    let tool = Pose {
+        rotation: Rotation::exp(Vec3::new(0.3, 1.0, -0.4)),
+        translation: Vec3::new(0.1, -0.2, 0.3),
+    };
+    builder.frame("tip", "l7", tool).tool("tip");
+    builder.build().unwrap()
+}
+
+/// A joint beyond the six moves a tool that is off its axis: no answer is missing, and none depends on
+/// those before it.
+#[test]
+fn a_locked_joint_beyond_the_six() {
+    let mut random = Random(81);
+    for (kind, is_wrist_last) in [
+        (JointKind::Revolute, true),
+        (JointKind::Revolute, false),
+        (JointKind::Prismatic, true),
+        (JointKind::Prismatic, false),
+    ] {
+        let robot = with_a_joint_beyond(kind, is_wrist_last);
+        let new = || Analytic::with_locked(&robot, robot.tool(), &[6]).unwrap();
+        let mut ik = new();
+        let words = if is_wrist_last { "spherical wrist" } else { "spherical shoulder" };
+        assert!(ik.geometry().to_string().starts_with(words), "{}", ik.geometry());
+        for i in 0..100 {
+            let q: Vec<f64> = random.vector(7).iter().map(|x| 3.0 * x).collect();
+            let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
+            if i % 10 == 0 && kind == JointKind::Prismatic {
+                // Far away no pose is reached.
+                let mut far = q.clone();
+                far[6] = 1e100;
+                assert!(ik.solve(target, &far).unwrap().is_empty());
+            }
+            let answers = ik.solve(target, &q).unwrap();
+            let found = answers.iter().any(|answer| apart(&answer.q, &q[..6]) < 1e-6);
+            assert!(found, "{words}, {kind:?}: {q:?} {answers:?}");
+            assert_eq!(new().solve(target, &q).unwrap(), answers, "{words}, {kind:?}: {q:?}");
         }
     }
 }
