@@ -94,8 +94,7 @@ pub(super) fn sines_cosines<R: Simd>(x: &mut [R], sines: &mut [R], memory: &mut 
 
 /// The angle of (cos, sin), of any length between 1e-290 and 1e307, in [-pi, pi], to 3 ulp.
 ///
-/// Takes half the time of the standard library's; the closed form calls it thirty times per pose, and
-/// an error of orientation once.
+/// Takes half the time of the standard library's; the closed form calls it thirty times per pose.
 #[inline]
 pub(crate) fn atan2(sin: f64, cos: f64) -> f64 {
     const P: [f64; 5] = [

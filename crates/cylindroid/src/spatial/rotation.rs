@@ -16,7 +16,7 @@ use super::quaternion::Quaternion;
 use super::series::atanc;
 use super::vec3::{Mat3, Vec3};
 use crate::error::{Error, Result};
-use crate::scalar::{atan2, sin_cos};
+use crate::scalar::sin_cos;
 use crate::tolerance::{ORTHONORMAL, SMALL_TANGENT, ZERO_AXIS};
 
 /// A rotation, `a_from_b`: its columns are the axes of frame b in frame a.
@@ -68,7 +68,7 @@ impl Rotation {
             2.0 * inverse * atanc(square)
         } else {
             let s = v.norm();
-            2.0 * atan2(s, q.w) / s
+            2.0 * s.atan2(q.w) / s
         };
         v * factor
     }
