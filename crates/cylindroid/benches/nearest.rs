@@ -10,6 +10,7 @@ use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
 use cylindroid::model::Coordinate;
 use cylindroid::{EndEffector, Mechanism, Vec3, catalogue};
 
+/// Robots of the catalogue that are timed.
 const ARMS: [&str; 4] = ["panda", "iiwa14", "ur5e", "puma560"];
 /// Targets of a row of the table.
 const TARGETS: usize = 400;

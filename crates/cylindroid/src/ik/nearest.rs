@@ -5,8 +5,9 @@
 //!          is sampled outwards from its preferred value, until its own displacement exceeds the
 //!          distance of the best solution, and more finely where branches end. Solutions that are closer than their neighbours on the
 //!          same branch, and points between ends of branches (`branches.rs`), are corrected by a few
-//!          Newton steps and are the start of a descent along the self-motion, in the order of their distance, as long as it can come
-//!          closer than the best: the distance changes by no more than the configuration.
+//!          Newton steps and are the start of a descent along the self-motion, in the order of
+//!          their distance, as long as it can come closer than the best: the distance changes by
+//!          no more than the configuration.
 //! Valid    branches and gaps shorter than a sampling step may be missed
 //! Why so   the samples cover all branches for the price of a few random restarts, which reach some
 //!          branches rarely
@@ -124,7 +125,7 @@ impl Solver {
         q.copy_from_slice(&self.start);
         formulas.analytic.check(target, &q)?;
         let (mut best, mut calls) = (closest * closest, 0);
-        // A solution needs no further test.
+        // Nothing but the target decides on a solution.
         let is_accepted = self.avoidance.is_none() && self.problem.half_spaces.is_empty();
         let near = places.map(|c| q[c]);
         let (mut k, mut gap) = (0, 0);

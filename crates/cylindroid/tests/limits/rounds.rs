@@ -57,6 +57,11 @@ impl Kind {
         }
     }
 
+    /// True if bodies of every robot of this kind are watched.
+    pub(crate) fn watches_distances(self) -> bool {
+        matches!(self, Self::Distances | Self::ClosedDistances | Self::SpatialDistances)
+    }
+
     pub(crate) fn of(seed: u64) -> Self {
         match seed % 20 {
             0..6 => Self::Catalogue,

@@ -182,16 +182,12 @@ impl Axes {
                 }
             }
         }
-        let (base, tool) = match structure.reversed {
-            false => (Vec3::ZERO, self.tool),
-            true => (self.tool, Vec3::ZERO),
-        };
         let step = |i: usize| match i {
-            0 => o[0] - base,
-            6 => tool - o[5],
+            0 => o[0],
+            6 => -o[5],
             _ => o[i] - o[i - 1],
         };
-        ArmParameters {
+        let mut parameters = ArmParameters {
             h,
             p: [0, 1, 2, 3, 4, 5, 6].map(step),
             end: if structure.reversed { o[0] } else { o[5] },
@@ -206,12 +202,14 @@ impl Axes {
                 (Three::Meet, Two::Meet(2)) => Order::FirstX(1),
                 (Three::Meet, Two::Meet(_)) => Order::FirstY(1),
             },
-        }
+        };
+        parameters.set_tool(self.tool, structure.reversed);
+        parameters
     }
 }
 
 impl ArmParameters {
-    /// The same axes with the tool elsewhere.
+    /// Sets the origin of the tool at zero (m); the axes stay.
     pub(super) fn set_tool(&mut self, tool: Vec3, reversed: bool) {
         match reversed {
             false => self.p[6] = tool - self.end,

@@ -43,29 +43,29 @@ fn seven_joints_with_one_held() {
     }
 }
 
-/// An arm with one more joint than the closed form takes: seven revolute axes, or a slide that
-/// carries the tool, which is off the last axis.
+/// Six revolute joints with a closed form, and a seventh joint that carries a tool off its axis.
 fn with_a_joint_beyond(seventh: JointKind, is_wrist_last: bool) -> Mechanism {
     let mut builder = Mechanism::builder("seven");
     // A spherical wrist, or the same read from the tool: a spherical shoulder.
-    let mut places = [
-        (Vec3::new(0.0, 0.0, 0.3), Vec3::Z),
-        (Vec3::new(0.1, 0.0, 0.1), Vec3::Y),
-        (Vec3::new(0.0, 0.0, 0.4), Vec3::Y),
-        (Vec3::new(0.3, 0.0, 0.05), Vec3::X),
-        (Vec3::ZERO, Vec3::Y),
-        (Vec3::ZERO, Vec3::X),
-    ];
-    if !is_wrist_last {
-        places = [
+    let places = if is_wrist_last {
+        [
+            (Vec3::new(0.0, 0.0, 0.3), Vec3::Z),
+            (Vec3::new(0.1, 0.0, 0.1), Vec3::Y),
+            (Vec3::new(0.0, 0.0, 0.4), Vec3::Y),
+            (Vec3::new(0.3, 0.0, 0.05), Vec3::X),
+            (Vec3::ZERO, Vec3::Y),
+            (Vec3::ZERO, Vec3::X),
+        ]
+    } else {
+        [
             (Vec3::new(0.0, 0.1, 0.3), Vec3::Z),
             (Vec3::ZERO, Vec3::Y),
             (Vec3::ZERO, Vec3::Z),
             (Vec3::new(0.05, 0.0, 0.4), Vec3::Y),
             (Vec3::new(-0.05, 0.0, 0.3), Vec3::Z),
             (Vec3::new(0.0, 0.0, 0.1), Vec3::Y),
-        ];
-    }
+        ]
+    };
     let seventh = (Vec3::new(0.02, 0.05, 0.1), Vec3::new(0.3, -0.2, 1.0), seventh);
     let six = places.map(|(at, axis)| (at, axis, JointKind::Revolute));
     for (i, (at, axis, kind)) in six.into_iter().chain([seventh]).enumerate() {

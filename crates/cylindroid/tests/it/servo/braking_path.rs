@@ -28,6 +28,15 @@ fn slides(accelerations: [f64; 2]) -> Mechanism {
     builder.build().unwrap()
 }
 
+/// The task that brings the tool to a pose; the unit of length is `1 / size` metres.
+fn towards(robot: &Mechanism, components: Task, goal: Pose, size: f64) -> MotionTask {
+    let objective =
+        TaskObjective::Frame { end_effector: robot.tool().into(), components, target: goal.into() };
+    let mut task = MotionTask { gain: 20.0, ..MotionTask::new("tool", objective) };
+    task.tolerance.position *= size;
+    task
+}
+
 /// A wedge of two walls of which the upper one is met late: the way along the lower one is ended in
 /// time. Without braking in mind the ball enters the wedge too fast for the slow slide.
 #[test]
@@ -47,12 +56,7 @@ fn a_wedge_is_entered_no_faster_than_braking_ends() {
         let gap = 0.002;
         options.collisions = Some(CollisionAvoidance { model: model.clone(), gap, margin: 0.1 });
         let goal = Pose::from_translation(Vec3::new(1.5, 0.0, 0.0));
-        let objective = TaskObjective::Frame {
-            end_effector: robot.tool().into(),
-            components: Task::POSITION,
-            target: goal.into(),
-        };
-        let task = MotionTask { gain: 20.0, ..MotionTask::new("ball", objective) };
+        let task = towards(&robot, Task::POSITION, goal, 1.0);
         let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
         let mut q = vec![-1.9, 0.1];
         let mut near: Vec<NearPair> = Vec::new();
@@ -128,13 +132,7 @@ fn way_into_the_wedge(world: Pose, size: f64) -> Vec<Vec<f64>> {
         rotation: Rotation::exp(Vec3::Z * 1.2),
         translation: Vec3::new(1.5, 0.0, 0.0) * size,
     };
-    let objective = TaskObjective::Frame {
-        end_effector: robot.tool().into(),
-        components: Task::POSE,
-        target: (world * goal).into(),
-    };
-    let mut task = MotionTask { gain: 20.0, ..MotionTask::new("bar", objective) };
-    task.tolerance.position *= size;
+    let task = towards(&robot, Task::POSE, world * goal, size);
     let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
     let mut q = vec![-1.5 * size, 0.1 * size, -0.4];
     let mut near = Vec::new();
@@ -173,8 +171,8 @@ fn the_way_into_a_wedge_depends_on_no_frame_and_no_unit() {
     assert_same_everywhere(&own, way_into_the_wedge);
 }
 
-/// A five-bar of drives of unequal accelerations, and two posts that its elbows and its tip meet on
-/// their way. Lengths are `size` times those in metres, and all of it stands at `world`.
+/// A five-bar of drives of unequal accelerations, and two posts that its links meet on their
+/// way. Lengths are `size` times those in metres, and all of it stands at `world`.
 fn five_bar_between_posts(world: Pose, size: f64) -> (Mechanism, CollisionModel) {
     let mut builder = Mechanism::builder("five-bar between posts");
     let (lower, upper, width, meeting) = (0.4_f64, 0.5_f64, 0.6, Vec3::new(0.3, 0.7, 0.0));
@@ -239,13 +237,7 @@ fn way_between_posts(world: Pose, size: f64) -> (Vec<Vec<f64>>, f64, [String; 2]
     let (gap, margin) = (0.002 * size, 0.1 * size);
     options.collisions = Some(CollisionAvoidance { model: model.clone(), gap, margin });
     let goal = Pose::from_translation(Vec3::new(0.7, 0.35, 0.0) * size);
-    let objective = TaskObjective::Frame {
-        end_effector: robot.tool().into(),
-        components: Task::POSITION,
-        target: (world * goal).into(),
-    };
-    let mut task = MotionTask { gain: 20.0, ..MotionTask::new("tip", objective) };
-    task.tolerance.position *= size;
+    let task = towards(&robot, Task::POSITION, world * goal, size);
     let mut servo = TaskServo::new(&robot, vec![task], options).unwrap();
     let mut q = robot.home().to_vec();
     let (mut near, mut way) = (Vec::new(), Vec::new());
