@@ -83,6 +83,15 @@ fn links_of_a_closed_chain_stay_apart() {
     assert!(tally.steps == 500 && tally.violations.is_empty(), "{:?}", tally.violations);
 }
 
+/// Spatial loops whose links come nearer than the gap, and not into one another.
+#[test]
+fn links_of_spatial_loops_stay_apart() {
+    for seed in [33899, 40979, 74099, 79859] {
+        let tally = rounds::run(Kind::SpatialDistances, seed);
+        assert!(tally.below_gap > 0 && tally.violations.is_empty(), "{seed}: {tally}");
+    }
+}
+
 /// Scenes in which braking within limits of the jerk was cut to what the tasks ask for, and the arm
 /// came 0.4 to 0.5 mm into an obstacle.
 #[test]
