@@ -470,6 +470,10 @@ pub const PARALLEL_SEGMENTS: f64 = 1e-24;
 /// some metres; the normal is then taken from the shapes.
 pub const ZERO_SEPARATION: f64 = 1e-14;
 
+/// Bodies whose cores are no larger than this together (m) count as points in the search for their
+/// distance: the reciprocal of a smaller size, times a distance, squared, is not finite.
+pub const NO_EXTENT: f64 = 1e-30;
+
 /// Share by which the radius of a fitted capsule exceeds that of the smallest circle, against
 /// rounding [-].
 pub const CAPSULE_ENLARGED: f64 = 1e-12;

@@ -4,7 +4,8 @@
 //!          origin, v, the support point w along -v; |v| is an upper and v.w / |v| a lower bound of
 //!          the distance. Where the cores overlap, the facet of the difference that is nearest to the
 //!          origin (expanding polytope)
-//! Units    the sum of the radii of both cores is one, so that no threshold depends on the scale
+//! Units    the sum of the radii of both cores is one, so that no threshold depends on the scale;
+//!          metres where it is zero to [`NO_EXTENT`]
 //! Valid    bounded cores; the distance is exact to [`GJK_GAP`], the depth to [`DEPTH_GAP`], of that
 //!          sum
 //! Fails    never
@@ -15,7 +16,7 @@
 //!          Supports are evaluated about the centre of the first core, so that a far world origin
 //!          costs no digits
 //! Source   Gilbert, Johnson & Keerthi 1988; van den Bergen 2001
-//! Checked  tests/collision/laws.rs
+//! Checked  tests/collision/laws.rs, tests/formats/mutated_files.rs::findings_stay_mended
 
 use parry3d_f64::math::{Pose as ParryPose, Vector};
 use parry3d_f64::query::epa::EPA;
@@ -27,7 +28,7 @@ use super::separation::Separation;
 use super::simplex::{Simplex, Vertex};
 use crate::linalg::{Hull, HullGoal, HullOptions, Qr};
 use crate::spatial::{Pose, Vec3};
-use crate::tolerance::{DEPTH_GAP, GJK_GAP, ZERO_SEPARATION};
+use crate::tolerance::{DEPTH_GAP, GJK_GAP, NO_EXTENT, ZERO_SEPARATION};
 
 /// Iterations at most; polytopes end after a few, curved shapes after some dozens.
 const MAX_ITERATIONS: usize = 128;
@@ -114,7 +115,8 @@ impl Gjk {
     pub(super) fn separation(&mut self, a: Placed<'_>, b: Placed<'_>) -> Separation {
         let about = a.world_from_shape.translation;
         let size = a.shape.core.bound() + b.shape.core.bound();
-        let (size, factor) = if size > 0.0 { (size, 1.0 / size) } else { (1.0, 1.0) };
+        let size = if size > NO_EXTENT { size } else { 1.0 };
+        let factor = 1.0 / size;
         let oriented = |p: Placed<'_>| p.world_from_shape.translation - about;
         let difference = Difference {
             a: Oriented {

@@ -199,3 +199,33 @@ fn shapes_without_sense_are_refused() {
     let lost = Pose::from_translation(Vec3::new(f64::NAN, 0.0, 0.0));
     assert!(distance((&ball, lost), (&ball, at)).is_err());
 }
+
+/// A shape whose lengths are too small for the squares of their reciprocals is a point; overlapping,
+/// it is as deep as a point is.
+#[test]
+fn shapes_without_extent_are_points() {
+    let mut random = Random(19);
+    let point = Geometry::Sphere { radius: 0.0 };
+    for size in [0.0, 5e-324, 1e-320, 1e-200, 1e-150, 1e-31, 1e-29, 1e-20] {
+        // A half-space has no size.
+        for kind in (0..KINDS).filter(|kind| *kind != 6) {
+            for other in 0..KINDS {
+                let (small, body) = (shape(&mut random, kind), shape(&mut random, other));
+                let small = scaled(&small, size);
+                for spread in [3.0, 0.02] {
+                    let mut pose =
+                        || Pose { rotation: random.rotation(), translation: random.vec3(spread) };
+                    let (at, there) = (pose(), pose());
+                    let it = distance((&small, at), (&body, there)).unwrap();
+                    let wanted = distance((&point, at), (&body, there)).unwrap();
+                    let unlike = format!("{it:?} instead of {wanted:?}: {small:?}, {body:?}");
+                    assert!((it.distance - wanted.distance).abs() < 1e-9, "{unlike}");
+                    assert!((it.normal.norm() - 1.0).abs() < 1e-12, "{unlike}");
+                    assert!(it.point_a.is_finite() && it.point_b.is_finite(), "{unlike}");
+                }
+                let it = distance((&small, Pose::IDENTITY), (&small, Pose::IDENTITY)).unwrap();
+                assert!(it.distance.abs() <= 1e-12, "{it:?}: {small:?} and itself");
+            }
+        }
+    }
+}

@@ -100,7 +100,8 @@ fn findings_stay_mended() {
     let models = found(&["toml", "urdf", "sdf", "xml"], &model);
     assert!(models.contains(&true) && models.contains(&false), "{models:?}");
     found(&["srdf"], &|path| semantics(path, &panda));
-    found(&["obj", "stl", "dae"], &mesh);
+    let meshes = found(&["obj", "stl", "dae"], &mesh);
+    assert!(meshes.contains(&true), "{meshes:?}");
 }
 
 #[test]
