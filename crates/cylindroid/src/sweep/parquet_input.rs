@@ -9,6 +9,7 @@ use std::path::Path;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use crate::error::Error;
@@ -73,6 +74,7 @@ fn read_columns(
         }
         let mut columns = Vec::with_capacity(n);
         for (&place, name) in places.iter().zip(names) {
+            check_place(group.metadata().column(place)).map_err(because)?;
             let of = group.get_column_reader(place).map_err(because)?;
             match read(of, rows).map_err(because)? {
                 Ok(column) => columns.push(column),
@@ -87,6 +89,16 @@ fn read_columns(
         first = end;
     }
     Ok(q)
+}
+
+/// Refuses negative offsets and sizes, at which the reader would panic.
+fn check_place(chunk: &ColumnChunkMetaData) -> Result<(), ParquetError> {
+    let offsets = [chunk.data_page_offset(), chunk.dictionary_page_offset().unwrap_or(0)];
+    if offsets.iter().any(|offset| *offset < 0) || chunk.compressed_size() < 0 {
+        let name = chunk.column_path().string();
+        return Err(ParquetError::General(format!("the place of column '{name}' is negative")));
+    }
+    Ok(())
 }
 
 /// The numbers of a column, or the first row that has none.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use cylindroid::sweep::{
-    Quantity, Source, Sweep, SweepOptions, WriteOptions, parquet_configurations,
+    Quantity, Source, Sweep, SweepOptions, WriteOptions, parquet_columns, parquet_configurations,
 };
 use serde_json::Value;
 
@@ -163,6 +163,10 @@ fn a_part_is_a_file_of_configurations() {
     assert_eq!(read("rows-of-file.parquet").unwrap(), expected);
     let error = read("rows-of-group.parquet").unwrap_err().to_string();
     assert!(error.contains("row 4, column 'q1': no number"), "{error}");
+    // A file whose columns begin before it does.
+    let first = parquet_columns(&findings.join("place-of-column.parquet"), &["q1"]);
+    let error = first.unwrap_err().to_string();
+    assert!(error.contains("the place of column 'q1' is negative"), "{error}");
     if cfg!(unix) {
         // A pipe waits for its writer.
         let pipe = folder.path().join("pipe.parquet");
