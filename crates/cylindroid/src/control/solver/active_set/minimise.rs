@@ -1,6 +1,8 @@
 //! Steps of least squares up to the first row in the way, and the release of rows.
 //!
-//! Formula  A^T (b - A y) = F^T m + G_W^T l, l >= 0 at the solution
+//! Formula  A^T (b - A y) = F^T m + G_W^T l, l >= 0 at the solution. With G_W^T = Q T on the motions
+//!          outside F, an error of size d in the left side changes l_k by up to |e_k^T T^-1| d:
+//!          multipliers up to that are zero, since nearly dependent rows share large ones of rounding
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
 
@@ -143,19 +145,18 @@ impl ActiveSet {
         precision: Precision,
     ) -> f64 {
         let moved = norm(&self.y);
-        let least = match objective {
+        let (size, rounding) = match objective {
             Objective::Nearest(desired) => {
                 for ((g, goal), y) in self.gradient.iter_mut().zip(*desired).zip(&self.y) {
                     *g = goal - y;
                 }
-                precision.release * norm(&self.gradient) + ROUNDING * (norm(desired) + moved)
+                (norm(&self.gradient), ROUNDING * (norm(desired) + moved))
             }
             Objective::Rows(level) | Objective::Damped(level, _) => {
                 level.load_residual(&self.y);
                 level.rows.tr_mul_vec_into(&level.residual, &mut self.gradient);
                 let reached = norm(&level.target) + level.scale * moved;
-                let size = precision.release * norm(&level.residual) + ROUNDING * reached;
-                level.scale * size
+                (level.scale * norm(&level.residual), level.scale * ROUNDING * reached)
             }
         };
         if let Objective::Damped(_, damping) = objective {
@@ -166,8 +167,30 @@ impl ActiveSet {
             self.multipliers[k] = dot(self.basis.column(self.fixed + k), &self.gradient);
         }
         solve_triangle(&self.triangle, w, &mut self.multipliers);
+        let least = precision.release * size + rounding;
+        for k in 0..w {
+            let multiplier = self.multipliers[k].abs();
+            if multiplier * self.inequalities.length(self.working[k].row) > least
+                && multiplier <= rounding * self.amplification(k)
+            {
+                self.multipliers[k] = 0.0;
+            }
+        }
         self.least = least;
         least
+    }
+
+    /// The norm of the k-th row of the inverse of the triangle, by which errors of a gradient grow in
+    /// the multiplier of the k-th working row; overwrites `normal`.
+    fn amplification(&mut self, k: usize) -> f64 {
+        let (w, mut sum) = (self.working.len(), 0.0);
+        for j in k..w {
+            let before: f64 = (k..j).map(|i| self.normal[i] * self.triangle[(i, j)]).sum();
+            let unit = if j == k { 1.0 } else { 0.0 };
+            self.normal[j] = (unit - before) / self.triangle[(j, j)];
+            sum += self.normal[j] * self.normal[j];
+        }
+        sum.sqrt()
     }
 
     /// Releases the working row with the most negative multiplier; false if none is below `-least`.
