@@ -67,13 +67,14 @@ impl Core {
             }
             Self::Cylinder { radius, half } => {
                 let across = d.x.hypot(d.y);
-                let scale = if across > 0.0 { radius / across } else { 0.0 };
+                // The reciprocal of a smaller number is infinite.
+                let scale = if across >= f64::MIN_POSITIVE { radius / across } else { 0.0 };
                 Vec3::new(d.x * scale, d.y * scale, signed(*half, d.z))
             }
             Self::Ellipsoid { radii } => {
                 let scaled = Vec3::new(radii.x * d.x, radii.y * d.y, radii.z * d.z);
                 let norm = scaled.norm();
-                let scale = if norm > 0.0 { 1.0 / norm } else { 0.0 };
+                let scale = if norm >= f64::MIN_POSITIVE { 1.0 / norm } else { 0.0 };
                 Vec3::new(radii.x * scaled.x, radii.y * scaled.y, radii.z * scaled.z) * scale
             }
             Self::Hull(hull) => hull.support(d),
