@@ -58,6 +58,7 @@ impl Core {
     /// A point of the core that is farthest along `d`; the origin for a half-space.
     #[inline]
     pub(super) fn support(&self, d: Vec3) -> Vec3 {
+        // Lengths below `MIN_POSITIVE` have no finite reciprocal.
         let signed = |x: f64, by: f64| if by < 0.0 { -x } else { x };
         match self {
             Self::Point | Self::HalfSpace => Vec3::ZERO,
@@ -67,7 +68,6 @@ impl Core {
             }
             Self::Cylinder { radius, half } => {
                 let across = d.x.hypot(d.y);
-                // The reciprocal of a smaller number is infinite.
                 let scale = if across >= f64::MIN_POSITIVE { radius / across } else { 0.0 };
                 Vec3::new(d.x * scale, d.y * scale, signed(*half, d.z))
             }

@@ -74,7 +74,7 @@ fn read_columns(
         }
         let mut columns = Vec::with_capacity(n);
         for (&place, name) in places.iter().zip(names) {
-            check_place(group.metadata().column(place)).map_err(because)?;
+            check_place(group.metadata().column(place)).map_err(refuse)?;
             let of = group.get_column_reader(place).map_err(because)?;
             match read(of, rows).map_err(because)? {
                 Ok(column) => columns.push(column),
@@ -92,11 +92,11 @@ fn read_columns(
 }
 
 /// Refuses negative offsets and sizes, at which the reader would panic.
-fn check_place(chunk: &ColumnChunkMetaData) -> Result<(), ParquetError> {
+fn check_place(chunk: &ColumnChunkMetaData) -> Result<(), String> {
     let offsets = [chunk.data_page_offset(), chunk.dictionary_page_offset().unwrap_or(0)];
     if offsets.iter().any(|offset| *offset < 0) || chunk.compressed_size() < 0 {
         let name = chunk.column_path().string();
-        return Err(ParquetError::General(format!("the place of column '{name}' is negative")));
+        return Err(format!("the place of column '{name}' is negative"));
     }
     Ok(())
 }

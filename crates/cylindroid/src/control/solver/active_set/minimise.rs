@@ -4,7 +4,8 @@
 //!          outside F, an error of size d in the left side changes l_k by up to |e_k^T T^-1| d:
 //!          multipliers up to that are zero, since nearly dependent rows share large ones of rounding
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
-//! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel
+//! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel,
+//!          src/control/solver/hierarchy/tests.rs::findings_stay_mended
 
 use super::{ActiveSet, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, solve_triangle};
 use crate::linalg::{dot, norm};

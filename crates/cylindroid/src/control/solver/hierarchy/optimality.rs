@@ -33,8 +33,8 @@ const ROUNDING: f64 = 1e-12;
 /// Rounding of the product of ten numbers or fewer, relative to the sizes of both factors.
 const ROUNDING_OF_PRODUCT: f64 = 10.0 * f64::EPSILON;
 
-/// Singular values of levels between these shares of the largest: their squares are rounding, they are
-/// not.
+/// The rank of levels is unclear where a singular value lies between these shares of the largest: it is
+/// more than rounding, its square, by which gradients change, is not.
 const UNCLEAR: [f64; 2] = [1e-13, 1e-6];
 
 /// Solves the problem that the bytes describe, level by level, and checks every point.
