@@ -39,7 +39,7 @@ pub(in crate::control) use level::Level;
 const ROUNDS: usize = 4;
 
 /// A row whose part outside others is smaller than this share of it depends on them [-].
-const DEPENDENT: f64 = 1e-10;
+pub(in crate::control::solver) const DEPENDENT: f64 = 1e-10;
 
 /// Rounding of a multiplier, relative to the terms that it is the difference of [-].
 const ROUNDING: f64 = 1e-13;
@@ -65,9 +65,14 @@ pub(in crate::control) struct Precision {
 }
 
 impl Precision {
-    /// Up to rounding.
+    /// Of tasks: singular values that may be needed to keep the direction of a scaled one; the bounds
+    /// limit the velocities there.
+    pub(in crate::control) const STRAIGHT: Self = Self { rank: 1e-6, release: 1e-9 };
+
+    /// Near rounding. A level moves along nothing that it does not keep: a singular value s of m rows leaves
+    /// the keeping of rows one at least as long as s / sqrt(m), which is above `DEPENDENT`.
     #[cfg(any(test, fuzzing))]
-    pub(in crate::control) const EXACT: Self = Self { rank: 1e-11, release: 1e-11 };
+    pub(in crate::control) const EXACT: Self = Self { rank: 1e-9, release: 1e-11 };
 }
 
 /// Weak directions of a level.

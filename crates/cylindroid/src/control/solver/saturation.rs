@@ -21,9 +21,9 @@
 use curved::Curved;
 pub(in crate::control) use curved::{Curvature, Path};
 pub(in crate::control) use newton_step::NewtonStep;
-pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem, STRAIGHT};
+pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem};
 
-use super::active_set::{ActiveSet, Level, Objective};
+use super::active_set::{ActiveSet, Level, Objective, Precision};
 use super::bounds::{LimitKind, VelocityBounds};
 use super::inequalities::Inequalities;
 use crate::inverse::Method;
@@ -287,7 +287,7 @@ impl Saturator {
         };
         let clamped = match curvature {
             Some((_, Path::Curved)) => None,
-            _ => self.set.clamp_one_by_one(&mut self.task, STRAIGHT),
+            _ => self.set.clamp_one_by_one(&mut self.task, Precision::STRAIGHT),
         };
         if let Some((scale, stop)) = clamped
             && (scale >= MIN_SCALE
@@ -311,7 +311,7 @@ impl Saturator {
     /// set stands at its start.
     fn change_direction(&mut self, p: &Problem<'_>, last: &[f64]) {
         let Self { set, task, .. } = self;
-        let left = set.least_residual(task, STRAIGHT);
+        let left = set.least_residual(task, Precision::STRAIGHT);
         let left = (left / p.gain).min(norm(p.error));
         let damping = (CURVATURE * left).max(LEAST_DAMPING);
         #[cfg(test)]
@@ -319,7 +319,7 @@ impl Saturator {
             self.damping = damping;
         }
         set.start(last);
-        set.minimise(Objective::Damped(task, damping), STRAIGHT);
+        set.minimise(Objective::Damped(task, damping), Precision::STRAIGHT);
     }
 }
 

@@ -11,8 +11,8 @@ use super::levels::USUAL_GAIN;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::control::servo::{BrakingState, Surroundings};
+use crate::control::solver::active_set::Precision;
 use crate::control::solver::bounds::VelocityBounds;
-use crate::control::solver::saturation::STRAIGHT;
 use crate::error::Result;
 use crate::linalg::{dot, norm};
 
@@ -217,7 +217,7 @@ impl TaskServo {
             return;
         }
         let Some(escape) = &self.escape else { return };
-        self.set.approach(&escape.saddle.rates, STRAIGHT);
+        self.set.approach(&escape.saddle.rates, Precision::STRAIGHT);
         self.last.copy_from_slice(self.set.point());
         for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
             member.scale = 0.0;

@@ -15,10 +15,10 @@ use super::linear_range::LinearRange;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use crate::collision::NearPair;
-use crate::control::solver::active_set::{DampedLevel, FEASIBLE, Level, Weak, Whole};
+use crate::control::solver::active_set::{DampedLevel, FEASIBLE, Level, Precision, Weak, Whole};
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::control::solver::hierarchy::ScaledLevel;
-use crate::control::solver::saturation::{LEAST_DAMPING, MIN_SCALE, STRAIGHT};
+use crate::control::solver::saturation::{LEAST_DAMPING, MIN_SCALE};
 use crate::linalg::{dot, norm};
 
 /// Tasks that miss less than this share of their velocity are realised as a whole [-].
@@ -59,7 +59,7 @@ impl TaskServo {
                 break;
             }
         }
-        self.set.approach(&self.desired, STRAIGHT);
+        self.set.approach(&self.desired, Precision::STRAIGHT);
         let causes = (&self.bounds[..], self.options.half_spaces.len(), &self.near[..]);
         let mut stop = None;
         self.set.stopping().for_each(|row| {
@@ -157,7 +157,7 @@ impl TaskServo {
                     let size = norm(&whole.target);
                     let weak = Weak {
                         below: self.options.eps,
-                        none: STRAIGHT.rank,
+                        none: Precision::STRAIGHT.rank,
                         curvature: linear.curvature,
                         least: LEAST_DAMPING,
                     };
@@ -181,7 +181,7 @@ impl TaskServo {
                 *aside = member.direction_changed;
             }
             if level.left_aside.contains(&false) {
-                let is_stopped = self.set.solve_scaled(level, STRAIGHT, |row, sign| {
+                let is_stopped = self.set.solve_scaled(level, Precision::STRAIGHT, |row, sign| {
                     note(&mut stop, cause((row, sign), causes))
                 });
                 let y = self.set.point();
@@ -203,7 +203,7 @@ impl TaskServo {
                 // Weak directions are damped by what bends them, instead of left out.
                 turned.level.target.copy_from_slice(asked);
                 let DampedLevel { level: own, curvature, .. } = &mut *turned;
-                let left = self.set.least_left(own, STRAIGHT);
+                let left = self.set.least_left(own, Precision::STRAIGHT);
                 curvature.as_mut_slice().fill(0.0);
                 for member in members.iter_mut().filter(|m| m.direction_changed) {
                     let rows = member.rows.clone();
@@ -219,7 +219,7 @@ impl TaskServo {
                 turned.damp(LEAST_DAMPING, is_curved);
             }
             self.stops.clear();
-            self.set.solve_damped(turned, STRAIGHT, |row| self.stops.push(row));
+            self.set.solve_damped(turned, Precision::STRAIGHT, |row| self.stops.push(row));
             let turned = &mut turned.level;
             turned.left(self.set.point());
             for member in members.iter_mut().filter(|m| m.direction_changed) {

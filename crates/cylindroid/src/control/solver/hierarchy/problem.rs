@@ -113,6 +113,26 @@ impl Problem {
         Self { n, boxed, rows, lower, upper, levels }
     }
 
+    /// The same problem with its rows in the opposite order, each in another unit.
+    #[cfg(test)]
+    pub(super) fn reverse_and_scale(&mut self) {
+        let first = if self.boxed { self.n } else { 0 };
+        self.rows[first..].reverse();
+        self.lower[first..].reverse();
+        self.upper[first..].reverse();
+        for i in first..self.rows.len() {
+            let unit = [0.125, 1.0, 32.0][i % 3];
+            self.rows[i].iter_mut().for_each(|x| *x *= unit);
+            self.lower[i] *= unit;
+            self.upper[i] *= unit;
+        }
+        for (a, b) in &mut self.levels {
+            let (m, old) = (a.rows(), a.clone());
+            *a = Matrix::from_fn(m, self.n, |i, j| old[(m - 1 - i, j)]);
+            b.reverse();
+        }
+    }
+
     pub(super) fn active_set(&self) -> ActiveSet {
         let first = if self.boxed { self.n } else { 0 };
         let mut inequalities = Inequalities::new(self.n, self.boxed, self.rows.len() - first);

@@ -13,8 +13,8 @@
 //! Checked  tests/it/servo/edge.rs
 
 use super::newton_step::NewtonStep;
-use super::problem::{FED_FORWARD, Problem, STRAIGHT};
-use crate::control::solver::active_set::{ActiveSet, Level};
+use super::problem::{FED_FORWARD, Problem};
+use crate::control::solver::active_set::{ActiveSet, Level, Precision};
 use crate::linalg::{Matrix, dot, norm};
 
 /// Joint velocities below this share of all are roundings of zero [-].
@@ -71,7 +71,7 @@ impl Curved {
         p: &Problem<'_>,
         curvature: &mut dyn Curvature,
     ) {
-        set.least_residual(task, STRAIGHT);
+        set.least_residual(task, Precision::STRAIGHT);
         self.left.copy_from_slice(task.left(set.point()));
         let (size, error) = (norm(&self.left), norm(p.error));
         let scale = if size > 0.0 { (1.0 / p.gain).min(error / size) } else { 0.0 };
@@ -96,6 +96,6 @@ impl Curved {
             *b = share * x;
         }
         set.start(p.last);
-        set.least_residual(&mut self.level, STRAIGHT);
+        set.least_residual(&mut self.level, Precision::STRAIGHT);
     }
 }

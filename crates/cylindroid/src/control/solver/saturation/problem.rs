@@ -3,13 +3,8 @@
 //! Shapes   J: m x a
 //! Checked  src/control/solver/saturation/tests.rs
 
-use crate::control::solver::active_set::Precision;
 use crate::control::solver::bounds::VelocityBounds;
 use crate::linalg::{Matrix, norm};
-
-/// Singular values of a scaled task, relative to its norm, that may be needed to keep its direction
-/// [-]: the bounds limit the velocities there.
-pub(in crate::control) const STRAIGHT: Precision = Precision { rank: 1e-6, release: 1e-9 };
 
 /// Least damping of a task whose direction is changed [-].
 pub(in crate::control) const LEAST_DAMPING: f64 = 1e-6;
