@@ -115,6 +115,12 @@ impl ActiveSet {
         self.keep_rows(level);
     }
 
+    /// True if a row is held for the next levels.
+    #[cfg(any(test, fuzzing))]
+    pub(in crate::control::solver) fn holds(&self, row: usize) -> bool {
+        self.uses[row] == Use::Fixed
+    }
+
     /// Notes the point, the working rows and the uses of all rows.
     pub(in crate::control::solver) fn hold(&mut self) {
         self.before.copy_from_slice(&self.y);

@@ -3,8 +3,8 @@
 //! Formula  A^T (b - A y) = F^T m + G_W^T l, l >= 0 at the solution. With G_W^T = Q T on the motions
 //!          outside F, an error of size d in the left side changes l_k by up to |e_k^T T^-1| d:
 //!          multipliers up to that are zero, since nearly dependent rows share large ones of rounding.
-//!          The part of the left side on the free motions is such an error too: it is left along weak
-//!          directions, which take no part in steps, and no row is needed for it
+//!          The part of the left side on the free motions is such an error too: rounding, and what is
+//!          left along weak directions, which take no part in steps; no row is needed for it
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel,
 //!          src/control/solver/hierarchy/tests.rs::findings_stay_mended
@@ -148,19 +148,18 @@ impl ActiveSet {
         precision: Precision,
     ) -> f64 {
         let moved = norm(&self.y);
-        let (size, rounding, weak) = match objective {
+        let (size, rounding) = match objective {
             Objective::Nearest(desired) => {
                 for ((g, goal), y) in self.gradient.iter_mut().zip(*desired).zip(&self.y) {
                     *g = goal - y;
                 }
-                (norm(&self.gradient), ROUNDING * (norm(desired) + moved), 0.0)
+                (norm(&self.gradient), ROUNDING * (norm(desired) + moved))
             }
             Objective::Rows(level) | Objective::Damped(level, _) => {
                 level.load_residual(&self.y);
                 level.rows.tr_mul_vec_into(&level.residual, &mut self.gradient);
                 let reached = norm(&level.target) + level.scale * moved;
-                let size = level.scale * norm(&level.residual);
-                (size, level.scale * ROUNDING * reached, precision.rank * size)
+                (level.scale * norm(&level.residual), level.scale * ROUNDING * reached)
             }
         };
         if let Objective::Damped(_, damping) = objective {
@@ -172,23 +171,14 @@ impl ActiveSet {
         }
         solve_triangle(&self.triangle, w, &mut self.multipliers);
         let least = precision.release * size + rounding;
-        // Of the gradient, on the free motions: measured when needed.
-        let mut left = None;
+        let mut error = None;
         for k in 0..w {
             let multiplier = self.multipliers[k].abs();
-            if multiplier * self.inequalities.length(self.working[k].row) <= least {
-                continue;
-            }
-            let growth = self.amplification(k);
-            if multiplier > (rounding + weak) * growth {
-                continue;
-            }
-            let left = *left.get_or_insert_with(|| match weak {
-                0.0 => 0.0,
-                _ => self.free_gradient().min(weak),
-            });
-            if multiplier <= (rounding + left) * growth {
-                self.multipliers[k] = 0.0;
+            if multiplier * self.inequalities.length(self.working[k].row) > least {
+                let error = *error.get_or_insert_with(|| rounding + self.free_gradient());
+                if multiplier <= error * self.amplification(k) {
+                    self.multipliers[k] = 0.0;
+                }
             }
         }
         self.least = least;

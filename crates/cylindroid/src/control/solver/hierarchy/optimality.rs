@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The rank of levels is unclear where a singular value lies between these shares of the largest: it is
 /// more than rounding, its square, by which gradients change, is not.
-const UNCLEAR: [f64; 2] = [1e-13, 1e-6];
+const UNCLEAR: [f64; 2] = [1e-13, 1e-5];
 
 /// A row of a level that was solved: its value there must stay.
 struct Kept {
@@ -98,7 +98,7 @@ fn check_levels(problem: &Problem, random: &mut Random<'_>) -> bool {
             scale: rows,
             at: set.point().to_vec(),
         }));
-        is_clear &= has_clear_rank(problem, &kept, set.point());
+        is_clear &= has_clear_rank(problem, &kept, &set);
     }
     let goal: Vec<f64> = (0..problem.n).map(|_| random.signed()).collect();
     set.approach(&goal, Precision::STRAIGHT);
@@ -109,17 +109,19 @@ fn check_levels(problem: &Problem, random: &mut Random<'_>) -> bool {
     is_clear
 }
 
-/// False if a singular value of the kept rows, alone or with those that bind, is neither zero nor clearly
-/// more.
-fn has_clear_rank(problem: &Problem, kept: &[Kept], y: &[f64]) -> bool {
+/// False if a singular value of the kept rows, alone, with the bounds that are held or with those that
+/// bind, is neither zero nor clearly more.
+fn has_clear_rank(problem: &Problem, kept: &[Kept], set: &ActiveSet) -> bool {
     let bounds = problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper));
-    let binding = bounds.filter(|(row, (l, u))| {
-        let (now, size) = product(row, y);
-        (now - **l).min(**u - now) <= 10.0 * FEASIBLE * (1.0 + size)
-    });
-    let rows = kept.iter().map(|kept| &kept.row);
-    let rows: Vec<&Vec<f64>> = rows.chain(binding.map(|(row, _)| row)).collect();
-    [kept.len(), rows.len()].into_iter().all(|m| {
+    let binds = |row: &[f64], lower: f64, upper: f64| {
+        let (now, size) = product(row, set.point());
+        (now - lower).min(upper - now) <= 10.0 * FEASIBLE * (1.0 + size)
+    };
+    let binding = bounds.enumerate().filter(|(_, (row, (l, u)))| binds(row, **l, **u));
+    let (held, others): (Vec<_>, Vec<_>) = binding.partition(|(i, _)| set.holds(*i));
+    let bounds = held.iter().chain(&others).map(|(_, (row, _))| *row);
+    let rows: Vec<&Vec<f64>> = kept.iter().map(|kept| &kept.row).chain(bounds).collect();
+    [kept.len(), kept.len() + held.len(), rows.len()].into_iter().all(|m| {
         let normals = Matrix::from_fn(problem.n, m, |j, i| rows[i][j]);
         let space = ColumnSpace::of(&normals, Threshold::Relative(UNCLEAR[0]));
         let [none, whole] = UNCLEAR.map(|share| share * space.largest());
