@@ -169,10 +169,10 @@ fn check_kept(problem: &Problem, kept: &[Kept], set: &ActiveSet) {
     assert!(y.iter().all(|x| x.is_finite()), "{y:?}");
     let rows = problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper));
     for (row, (lower, upper)) in rows {
-        let (now, size) = product(row, y);
+        let now = product(row, y).0;
         let excess = (now - upper).max(lower - now);
         let bound = lower.abs().min(upper.abs());
-        let slack = 10.0 * FEASIBLE * (1.0 + bound + norm(row)) + ROUNDING * size;
+        let slack = 10.0 * FEASIBLE * (1.0 + bound + norm(row)) + ROUNDING * norm(row) * norm(y);
         assert!(excess <= slack, "{row:?} beyond its bound by {excess:e}");
     }
     for Kept { row, value, scale, at } in kept {
