@@ -9,6 +9,7 @@ import secrets
 import shutil
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -169,6 +170,27 @@ def test_own_columns_name_themselves_and_the_rows(tmp_path):
     for wrong in ({"function": 3}, {"function": bend, "unit": 3}, {"function": bend, "version": 1}):
         with pytest.raises(cy.ArgumentTypeError, match="of a column"):
             cy.SweepColumn(**wrong)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 8])
+def test_of_several_errors_that_of_the_first_part_is_raised(workers, tmp_path):
+    """Part 2 ends after those behind it, all of which have an error too."""
+
+    def late(q, names):
+        part = round(q[0, 0] * 100)
+        if part == 2:
+            time.sleep(0.05)
+        if part == 2 or part > 3:
+            raise ValueError(f"no number in part {part}")
+        return q[:, 0]
+
+    columns = {"mine": cy.SweepColumn(late, "rad", "1")}
+    q = np.zeros((6 * 65_536, 5))
+    q[:, 0] = np.arange(len(q)) // 65_536 / 100
+    with concurrent.futures.ThreadPoolExecutor(workers) as engine:
+        for out in (None, tmp_path / "own"):
+            with pytest.raises(cy.InvalidOptionError, match="no number in part 2"):
+                cy.sweep(robot, configurations=q, quantities=[], columns=columns, engine=engine, out=out)
 
 
 def test_own_columns_are_part_of_the_recipe(tmp_path):

@@ -285,22 +285,35 @@ def run(
 def _finished(
     workers: _Executor | _Ray, work: _Work, count: int, listed: list[Listed | None]
 ) -> Generator[tuple[int, Any], None, None]:
-    """Parts as they are finished, with their results; an end before the last cancels the others."""
+    """Parts as they are finished, with their results; an end before the last cancels the others. Of
+    several parts with an error that of the first is raised, whatever the workers: parts before it
+    are waited for, those after it cancelled."""
     workers.prepare(work)
     left = iter(range(count))
     pending: dict[concurrent.futures.Future[Any], int] = {}
+    failed: tuple[int, concurrent.futures.Future[Any]] | None = None
     try:
         while True:
-            for part in itertools.islice(left, AHEAD * workers.workers - len(pending)):
-                known = listed[part] if listed else None
-                pending[workers.submit(part, known)] = part
+            if failed is None:
+                for part in itertools.islice(left, AHEAD * workers.workers - len(pending)):
+                    known = listed[part] if listed else None
+                    pending[workers.submit(part, known)] = part
+            else:
+                for future in [future for future, part in pending.items() if part > failed[0]]:
+                    del pending[future]
+                    workers.cancel(future)
             if not pending:
+                if failed is not None:
+                    workers.result(failed[1])
                 return
             # A limit, so that Ctrl-C is noticed.
             done, _ = concurrent.futures.wait(pending, 1.0, concurrent.futures.FIRST_COMPLETED)
-            # Finished parts first, so that an error of another one does not lose them.
-            for future in sorted(done, key=lambda future: future.exception() is not None):
-                yield pending.pop(future), workers.result(future)
+            for future in done:
+                part = pending.pop(future)
+                if future.exception() is None:
+                    yield part, workers.result(future)
+                elif failed is None or part < failed[0]:
+                    failed = part, future
     finally:
         for future in pending:
             workers.cancel(future)

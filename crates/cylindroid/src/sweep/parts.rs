@@ -2,7 +2,7 @@
 //!
 //! Why so   each thread takes the next part, alone, so that memory is that of as many parts as there
 //!          are threads, and numbers do not depend on how many there are
-//! Checked  tests/sweep/folder.rs::threads_change_nothing
+//! Checked  tests/sweep/folder.rs::threads_change_nothing, tests/sweep/errors.rs
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -10,16 +10,18 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// Between two calls of `tick` at most.
 const TICK: Duration = Duration::from_millis(100);
 
 /// Runs `work` on the parts 0 to `count`, as many at a time as there are threads, each with memory of
-/// its own. On the thread of
-/// the caller, `finished` takes each result as it comes and `tick` says whether to go on; after
-/// false, parts that have been started are finished and no others begin. The first error ends the
-/// run in the same way and is returned.
+/// its own. On the thread of the caller, `finished` takes each result as it comes and `tick` says
+/// whether to go on; after false, parts that have been started are finished, no others begin and
+/// `tick` is not called again. An error ends the run in the same way.
+///
+/// Of several parts with an error that of the first is returned, whatever the threads: parts begin
+/// in their order, so all before it have begun, and end.
 pub(super) fn run_parts<M: Default, T: Send>(
     count: usize,
     threads: Option<NonZeroUsize>,
@@ -31,7 +33,8 @@ pub(super) fn run_parts<M: Default, T: Send>(
     let threads = threads.map_or(1, NonZeroUsize::get).min(count.max(1));
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, receiver) = mpsc::channel();
-    let mut result = Ok(());
+    let mut failed: Option<(usize, Error)> = None;
+    let mut ticked = Ok(true);
     thread::scope(|scope| {
         for _ in 0..threads {
             let sender = sender.clone();
@@ -51,24 +54,21 @@ pub(super) fn run_parts<M: Default, T: Send>(
         loop {
             match receiver.recv_timeout(TICK) {
                 Ok((part, Ok(own))) => finished(part, own),
-                Ok((_, Err(error))) => {
-                    stop.store(true, Ordering::Relaxed);
-                    result = std::mem::replace(&mut result, Ok(())).and(Err(error));
+                Ok((part, Err(error))) => {
+                    if failed.as_ref().is_none_or(|(first, _)| part < *first) {
+                        failed = Some((part, error));
+                    }
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break,
             }
-            if result.is_ok() {
-                match tick() {
-                    Ok(true) => {}
-                    Ok(false) => stop.store(true, Ordering::Relaxed),
-                    Err(error) => {
-                        stop.store(true, Ordering::Relaxed);
-                        result = Err(error);
-                    }
-                }
+            if matches!(ticked, Ok(true)) {
+                ticked = tick();
+            }
+            if failed.is_some() || !matches!(ticked, Ok(true)) {
+                stop.store(true, Ordering::Relaxed);
             }
         }
     });
-    result
+    failed.map_or(ticked.map(|_| ()), |(_, error)| Err(error))
 }

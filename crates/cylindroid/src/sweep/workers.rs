@@ -1,35 +1,46 @@
 //! Workers: threads that compute the parts of a search or of a map, count what they do, and end where
 //! the observer stops them.
 //!
-//! Checked  tests/sweep/optimise.rs, tests/map/threads.rs
+//! Checked  the test below, tests/sweep/optimise.rs, tests/map/threads.rs
 
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 use super::Progress;
 use super::parts::run_parts;
 use crate::error::Result;
 
-/// What the threads count, and whether the observer wants them to go on.
-#[derive(Debug, Default)]
-pub(super) struct Watch {
+/// What the threads count, whether the observer wants them to go on, and the first part with an error.
+#[derive(Debug)]
+struct Shared {
     done: AtomicU64,
     stopped: AtomicBool,
+    failed: AtomicUsize,
 }
 
-impl Watch {
+/// What a part sees of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Watch<'a> {
+    shared: &'a Shared,
+    part: usize,
+}
+
+impl Watch<'_> {
     /// Counts what was done.
     pub(super) fn count(&self, more: u64) {
-        self.done.fetch_add(more, Ordering::Relaxed);
+        self.shared.done.fetch_add(more, Ordering::Relaxed);
     }
 
-    /// False once the observer has stopped the run: results are no longer needed.
+    /// False once the result is no longer needed: the observer has stopped the run, or a part before
+    /// this one has an error. Those before that part go on, for their errors come first.
     pub(super) fn goes_on(&self) -> bool {
-        !self.stopped.load(Ordering::Relaxed)
+        self.shared.goes_on() && self.part <= self.shared.failed.load(Ordering::Relaxed)
     }
+}
 
-    fn stop(&self) {
-        self.stopped.store(true, Ordering::Relaxed);
+impl Shared {
+    fn goes_on(&self) -> bool {
+        !self.stopped.load(Ordering::Relaxed)
     }
 
     /// Asks the observer whether to go on; one that has said no is not asked again.
@@ -41,7 +52,7 @@ impl Watch {
         let done = self.done.load(Ordering::Relaxed);
         let go_on = self.goes_on() && observe(&Progress { unit, rows, done, computed: done });
         if !go_on {
-            self.stop();
+            self.stopped.store(true, Ordering::Relaxed);
         }
         go_on
     }
@@ -51,7 +62,7 @@ impl Watch {
 pub(super) struct Workers<'a> {
     threads: Option<NonZeroUsize>,
     observe: &'a mut dyn FnMut(&Progress) -> bool,
-    watch: Watch,
+    shared: Shared,
     /// What is counted, and how many there are.
     counted: (&'static str, u64),
 }
@@ -62,18 +73,23 @@ impl<'a> Workers<'a> {
         threads: Option<NonZeroUsize>,
         observe: &'a mut dyn FnMut(&Progress) -> bool,
     ) -> Self {
-        Self { threads, observe, watch: Watch::default(), counted: ("", 0) }
+        let shared = Shared {
+            done: AtomicU64::new(0),
+            stopped: AtomicBool::new(false),
+            failed: AtomicUsize::new(usize::MAX),
+        };
+        Self { threads, observe, shared, counted: ("", 0) }
     }
 
     /// Begins to count in this unit: `all` of them, of which some are `done` already.
     pub(super) fn begin(&mut self, unit: &'static str, all: u64, done: u64) {
         self.counted = (unit, all);
-        *self.watch.done.get_mut() = done;
+        *self.shared.done.get_mut() = done;
     }
 
     /// False once the observer has stopped the run.
     pub(super) fn goes_on(&self) -> bool {
-        self.watch.goes_on()
+        self.shared.goes_on()
     }
 
     /// The results of all parts in their order; `None` if the observer stopped them. Each thread has
@@ -81,28 +97,68 @@ impl<'a> Workers<'a> {
     pub(super) fn run<M: Default, T: Send>(
         &mut self,
         count: usize,
-        work: impl Fn(&mut M, usize, &Watch) -> Result<T> + Sync,
+        work: impl Fn(&mut M, usize, Watch<'_>) -> Result<T> + Sync,
     ) -> Result<Option<Vec<T>>> {
         let mut all: Vec<Option<T>> = (0..count).map(|_| None).collect();
-        let (counted, watch, observe) = (self.counted, &self.watch, &mut *self.observe);
+        let (counted, shared, observe) = (self.counted, &self.shared, &mut *self.observe);
         run_parts(
             count,
             self.threads,
-            // After an error nobody needs the other parts.
-            |memory: &mut M, part| work(memory, part, watch).inspect_err(|_| watch.stop()),
+            |memory: &mut M, part| {
+                let result = work(memory, part, Watch { shared, part });
+                if result.is_err() {
+                    shared.failed.fetch_min(part, Ordering::Relaxed);
+                }
+                result
+            },
             |part, result| all[part] = Some(result),
-            || Ok(watch.asked(counted, observe)),
+            || Ok(shared.asked(counted, observe)),
         )?;
-        Ok(all.into_iter().collect::<Option<Vec<T>>>().filter(|_| self.watch.goes_on()))
+        Ok(all.into_iter().collect::<Option<Vec<T>>>().filter(|_| self.shared.goes_on()))
     }
 
     /// The result of work on the thread of the caller, which is shorter than the start of threads;
     /// `None` if the observer stopped it.
     pub(super) fn run_here<T>(
         &mut self,
-        work: impl FnOnce(&Watch) -> Result<T>,
+        work: impl FnOnce(Watch<'_>) -> Result<T>,
     ) -> Result<Option<T>> {
-        let result = work(&self.watch)?;
-        Ok(self.watch.asked(self.counted, self.observe).then_some(result))
+        let result = work(Watch { shared: &self.shared, part: 0 })?;
+        Ok(self.shared.asked(self.counted, self.observe).then_some(result))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::thread;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::error::Error;
+
+    /// A part with an error, which it has after some time, is waited for where others have one earlier;
+    /// it is not asked to stop before it has it, those after it are.
+    #[test]
+    fn of_several_errors_that_of_the_first_part_is_returned() {
+        for threads in [1, 2, 8] {
+            let mut go_on = |_: &Progress| true;
+            let mut workers = Workers::new(NonZeroUsize::new(threads), &mut go_on);
+            let found = workers.run(100, |(): &mut (), part, watch| match part {
+                3 => {
+                    for _ in 0..20 {
+                        thread::sleep(Duration::from_millis(1));
+                        if !watch.goes_on() {
+                            return Ok(());
+                        }
+                    }
+                    Err(Error::unknown("part", "3", [""]))
+                }
+                5.. => Err(Error::unknown("part", &part.to_string(), [""])),
+                _ => Ok(()),
+            });
+            let error = found.unwrap_err().to_string();
+            assert!(error.contains("'3'"), "{threads} threads: {error}");
+            assert!(workers.goes_on());
+        }
     }
 }

@@ -10,6 +10,7 @@
 mod capability;
 mod closed_samples;
 mod designs;
+mod errors;
 mod folder;
 mod optimise;
 mod own_columns;

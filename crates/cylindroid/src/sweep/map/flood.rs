@@ -126,7 +126,7 @@ impl Level<'_> {
         &self,
         path: &mut PlatformPath,
         neighbours: &[Neighbour],
-        watch: &Watch,
+        watch: Watch<'_>,
     ) -> Result<Vec<Step>> {
         let mut steps = Vec::new();
         // Neighbours of one cell lie side by side.

@@ -34,7 +34,7 @@ struct Family<'a> {
 
 impl Family<'_> {
     /// Its curves; some of them if the observer has stopped the workers.
-    fn loci(&self, problem: &Problem, axes: &[Axis], watch: &Watch) -> Result<Vec<Locus>> {
+    fn loci(&self, problem: &Problem, axes: &[Axis], watch: Watch<'_>) -> Result<Vec<Locus>> {
         let mut tracer = CurveTracer::new(
             problem.equations.clone(),
             self.vanishing.clone(),
