@@ -27,8 +27,9 @@ impl Bar {
         let counted = (progress.unit, progress.rows);
         let last = self.counted.replace(counted);
         if last.0 != progress.unit {
-            let counts = format!("{{human_pos}} of {{human_len}} {}", progress.unit);
-            let template = format!("{{wide_bar}} {counts}, {{per_sec}}, {{eta}} left");
+            let most = if progress.at_most { "at most " } else { "" };
+            let counts = format!("{{human_pos}} of {most}{{human_len}} {}", progress.unit);
+            let template = format!("{{wide_bar}} {counts}, {{per_sec}}, {most}{{eta}} left");
             if let Ok(style) = ProgressStyle::with_template(&template) {
                 self.bar.set_style(style);
             }

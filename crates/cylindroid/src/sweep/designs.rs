@@ -25,6 +25,9 @@ use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::tolerance::MAX_MAGNITUDE;
 
+/// The column of designs that have a mechanism.
+pub(super) const VALID: &str = "design_valid";
+
 /// Values of parameters.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -194,7 +197,7 @@ pub(super) struct Designs {
     pub(super) model: ParametricModel,
     pub(super) space: DesignSpace,
     pub(super) count: u64,
-    options: SweepOptions,
+    pub(super) options: SweepOptions,
     /// Configurations of each design.
     pub(super) each: u64,
     /// Columns of one design.
@@ -222,7 +225,7 @@ impl Designs {
         let (index, rest) =
             self.own_columns.split_first().map_or((None, &[][..]), |(i, r)| (Some(i), r));
         let design = Column::count("design", "place of the design, from 0");
-        let valid = Column::count("design_valid", "1 if the design has a mechanism, otherwise 0");
+        let valid = Column::count(VALID, "1 if the design has a mechanism, otherwise 0");
         let own = index.cloned().into_iter().chain(once(design)).chain(once(valid));
         own.chain(parameters).chain(rest.iter().cloned()).collect()
     }

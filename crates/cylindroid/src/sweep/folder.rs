@@ -36,14 +36,18 @@ pub struct WriteOptions {
     pub resume: bool,
 }
 
-/// The state of a running sweep or map.
+/// The state of a running sweep, map or search for designs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
     /// What is counted: "rows" of a sweep; of a map "starts" (random restarts that look for working
-    /// modes), then "cells" of the modes that are known so far, then "seeds" of curves.
+    /// modes), then "cells" of the modes that are known so far, then "seeds" of curves; of a search
+    /// evaluated "designs".
     pub unit: &'static str,
     /// Rows of the sweep, or how many there are of what is counted.
     pub rows: u64,
+    /// True if there may be fewer: modes do not reach all cells, refinements end before they have
+    /// evaluated all designs that they may. The time left is then that at most.
+    pub at_most: bool,
     /// Rows in finished parts, those of earlier runs included.
     pub done: u64,
     /// Rows that this run computed.
@@ -53,7 +57,7 @@ pub struct Progress {
 impl Progress {
     /// At the beginning of a sweep of this many rows.
     pub(super) const fn of_rows(rows: u64) -> Self {
-        Self { unit: "rows", rows, done: 0, computed: 0 }
+        Self { unit: "rows", rows, at_most: false, done: 0, computed: 0 }
     }
 }
 

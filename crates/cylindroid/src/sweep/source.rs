@@ -196,6 +196,11 @@ impl Configurations {
         matches!(self.kind, Kind::Poses(_))
     }
 
+    /// True for samples of a closed chain, which may have none.
+    pub(super) const fn of_closed_samples(&self) -> bool {
+        matches!(self.kind, Kind::Closed(_))
+    }
+
     /// Those of `rows` into `out`. Samples of a closed chain and poses that have no configuration have
     /// home, and are returned.
     pub(super) fn write(&self, rows: Range<u64>, out: &mut [f64]) -> Result<Vec<usize>> {

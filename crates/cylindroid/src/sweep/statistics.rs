@@ -8,6 +8,7 @@
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
+use super::designs::VALID;
 use super::job::Sweep;
 use super::parts::run_parts;
 use super::source::REACHED;
@@ -55,20 +56,19 @@ impl Sum {
         }
     }
 
-    /// Of those of these rows that are reached: others have no counts and no names.
-    fn of_reached(values: &Values, reached: &[u64], rows: Range<usize>) -> Self {
-        let own = rows.start.min(reached.len())..rows.end.min(reached.len());
-        let is_reached = reached[own.clone()].iter().map(|reached| *reached != 0);
+    /// Of those of these rows that are present: others have no counts and no names.
+    fn of_present(values: &Values, present: &[bool], rows: Range<usize>) -> Self {
+        let is_present = present.iter().copied();
         match values {
             Values::Numbers(_) => Self::of_rows(values, rows),
             Values::Counts(counts) => {
-                let all = counts[own].iter().zip(is_reached);
+                let all = counts.iter().skip(rows.start).zip(is_present);
                 let number = |(count, is): (&u64, bool)| if is { *count as f64 } else { f64::NAN };
                 Self::numbers(&all.map(number).collect::<Vec<_>>(), |x| x)
             }
             Values::Texts(texts) => {
                 let mut sum = Self::Texts(Vec::new());
-                let all = texts[own].iter().zip(is_reached).filter(|(_, is)| *is);
+                let all = texts.iter().skip(rows.start).zip(is_present).filter(|(_, is)| *is);
                 all.for_each(|(text, _)| sum.count(text, 1));
                 sum
             }
@@ -194,17 +194,33 @@ impl Sweep {
         self.of_parts((0..self.parts()).map(part).collect())
     }
 
-    /// Of these rows of all columns but `index`. Poses that are not reached have no counts and names.
+    /// True for a column that says whether a row has results, those in the columns after it.
+    fn says_presence(&self, column: &Column) -> bool {
+        match column.name.as_str() {
+            VALID => self.designs.is_some(),
+            REACHED => self.configurations.of_poses(),
+            "closed" => self.configurations.of_closed_samples(),
+            _ => false,
+        }
+    }
+
+    /// Of these rows of all columns but `index`. Rows of designs without a mechanism, of poses that are
+    /// not reached and of samples of a closed chain without a configuration have no counts and names.
     fn sums(&self, values: &[Values], rows: Range<usize>) -> Vec<Sum> {
-        let is_it = |c: &Column| self.configurations.of_poses() && c.name == REACHED;
-        let place = self.columns.iter().position(is_it).unwrap_or(usize::MAX);
-        let of = |(i, all): (usize, &Values)| match values.get(place) {
-            Some(Values::Counts(reached)) if i > place => {
-                Sum::of_reached(all, reached, rows.clone())
+        let mut present: Option<Vec<bool>> = None;
+        let mut sums = Vec::with_capacity(values.len());
+        for (column, all) in self.columns.iter().zip(values).skip(1) {
+            sums.push(match &present {
+                Some(present) => Sum::of_present(all, present, rows.clone()),
+                None => Sum::of_rows(all, rows.clone()),
+            });
+            if let (true, Values::Counts(own)) = (self.says_presence(column), all) {
+                let own = &own[rows.start.min(own.len())..rows.end.min(own.len())];
+                let before = present.get_or_insert_with(|| vec![true; own.len()]);
+                before.iter_mut().zip(own).for_each(|(is, own)| *is &= *own != 0);
             }
-            _ => Sum::of_rows(all, rows.clone()),
-        };
-        values.iter().enumerate().skip(1).map(of).collect()
+        }
+        sums
     }
 
     fn of_parts(&self, parts: Vec<Vec<Sum>>) -> Vec<(Column, Statistics)> {

@@ -46,11 +46,12 @@ impl Shared {
     /// Asks the observer whether to go on; one that has said no is not asked again.
     fn asked(
         &self,
-        (unit, rows): (&'static str, u64),
+        Counted { unit, all: rows, at_most }: Counted,
         observe: &mut dyn FnMut(&Progress) -> bool,
     ) -> bool {
         let done = self.done.load(Ordering::Relaxed);
-        let go_on = self.goes_on() && observe(&Progress { unit, rows, done, computed: done });
+        let progress = Progress { unit, rows, at_most, done, computed: done };
+        let go_on = self.goes_on() && observe(&progress);
         if !go_on {
             self.stopped.store(true, Ordering::Relaxed);
         }
@@ -58,13 +59,22 @@ impl Shared {
     }
 }
 
+/// What is counted.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Counted {
+    pub(super) unit: &'static str,
+    /// How many there are.
+    pub(super) all: u64,
+    /// True if there may be fewer.
+    pub(super) at_most: bool,
+}
+
 /// The threads and their observer.
 pub(super) struct Workers<'a> {
     threads: Option<NonZeroUsize>,
     observe: &'a mut dyn FnMut(&Progress) -> bool,
     shared: Shared,
-    /// What is counted, and how many there are.
-    counted: (&'static str, u64),
+    counted: Counted,
 }
 
 impl<'a> Workers<'a> {
@@ -78,12 +88,13 @@ impl<'a> Workers<'a> {
             stopped: AtomicBool::new(false),
             failed: AtomicUsize::new(usize::MAX),
         };
-        Self { threads, observe, shared, counted: ("", 0) }
+        let counted = Counted { unit: "", all: 0, at_most: false };
+        Self { threads, observe, shared, counted }
     }
 
-    /// Begins to count in this unit: `all` of them, of which some are `done` already.
-    pub(super) fn begin(&mut self, unit: &'static str, all: u64, done: u64) {
-        self.counted = (unit, all);
+    /// Begins to count; some are `done` already.
+    pub(super) fn begin(&mut self, counted: Counted, done: u64) {
+        self.counted = counted;
         *self.shared.done.get_mut() = done;
     }
 

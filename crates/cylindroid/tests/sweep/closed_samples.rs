@@ -4,7 +4,9 @@ use std::path::Path;
 
 use cylindroid::closure::{ContinuationOptions, PathEnd, track_path};
 use cylindroid::model::JointLimits;
-use cylindroid::sweep::{Axis, DesignSpace, Quantity, Source, Sweep, SweepOptions, Values};
+use cylindroid::sweep::{
+    Axis, DesignSpace, Quantity, Source, Statistics, Sweep, SweepOptions, Values,
+};
 use cylindroid::{Mechanism, ParametricModel};
 
 use crate::{bits, configurations, of};
@@ -63,6 +65,11 @@ fn samples_are_on_the_branch_of_home() {
         if model == "five-bar" {
             assert!(lost > 0, "{model}");
         }
+        // What has no configuration takes no part in statistics.
+        let all = sweep.statistics(None, |_| true).unwrap().unwrap();
+        let dof = &all.iter().find(|(column, _)| column.name == "dof").unwrap().1;
+        let Statistics::Numbers { smallest, mean, not_finite, .. } = *dof else { panic!() };
+        assert!(smallest >= 1.0 && mean >= smallest && not_finite == lost, "{model}: {dof:?}");
         let whole = bits(&table);
         for row in 0..64 {
             let one = bits(&sweep.table(row..row + 1).unwrap());

@@ -6,9 +6,9 @@ use std::path::Path;
 use cylindroid::ik::Task;
 use cylindroid::sweep::{
     Axis, DesignObjective, DesignSpace, Optimisation, OptimisationOptions, Optimum, ParameterRange,
-    Quantity, Sense, Source, Sweep, SweepOptions,
+    Quantity, Sense, Source, Sweep, SweepOptions, Values,
 };
-use cylindroid::{ParametricModel, Result};
+use cylindroid::{Error, ParametricModel, Result};
 
 use crate::designs::{ARM, axis, five_bar, orthoglide};
 
@@ -334,6 +334,74 @@ fn designs_without_an_index_are_told() {
     assert!(search.evaluate(&[0.6]).is_ok());
     let open = search.evaluate(&[0.65]).unwrap_err().to_string();
     assert!(open.contains("the loops of configuration 0 are open"), "{open}");
+}
+
+/// Counts of poses that are not reached and of samples without a configuration are not zeros of an
+/// index: the design has none, unless the share of the others is an index too.
+#[test]
+fn rows_without_a_configuration_are_no_zeros() {
+    let arm = model(ARM);
+    let task = Task::named("x,y", arm.nominal()).unwrap();
+    let numbers: Vec<f64> = [0.3, 0.6, 0.9, 1.2].iter().flat_map(|x| [*x, 0.0, 0.0]).collect();
+    let of = |objectives: &[DesignObjective]| {
+        let mut own = options(&[range("a", 0.2, 0.8)], objectives);
+        own.sweep.source = Source::poses(&numbers, task).unwrap();
+        Optimisation::new(&arm, own).unwrap()
+    };
+    // Reach 0.9 m, 1.8 a: three of four, by two joints that move freely there.
+    let dof = DesignObjective::named("dof:mean", Sense::Maximise).unwrap();
+    let refused = of(std::slice::from_ref(&dof)).evaluate(&[0.52]).unwrap_err().to_string();
+    assert!(refused.contains("pose 3 is not reached; with reached:mean"), "{refused}");
+    let reached = DesignObjective::named("reached:mean", Sense::Maximise).unwrap();
+    assert_eq!(of(&[dof.clone(), reached.clone()]).evaluate(&[0.52]).unwrap(), [2.0, 0.75]);
+    assert_eq!(of(&[dof, reached.clone()]).evaluate(&[0.7]).unwrap(), [2.0, 1.0]);
+    assert_eq!(of(std::slice::from_ref(&reached)).evaluate(&[0.7]).unwrap(), [1.0]);
+    let unknown = Error::unknown("index", "reached", ["closed"]).to_string();
+    let own = options(&[range("a", 0.2, 0.8)], &[reached]);
+    let refused = Optimisation::new(&arm, own).unwrap_err().to_string();
+    assert!(refused.starts_with(unknown.split(';').next().unwrap()), "{refused}");
+
+    let five_bar = five_bar();
+    let source = Source::Samples { count: 64, seed: 3 };
+    let of = |objectives: &[DesignObjective]| {
+        let mut own = options(&[range("rod", 0.5, 0.7)], objectives);
+        own.sweep.source = source.clone();
+        Optimisation::new(&five_bar, own).unwrap()
+    };
+    let refused = of(&[maximise("type_ii")]).evaluate(&[0.6]).unwrap_err().to_string();
+    assert!(refused.contains("no straight path of the drives reaches configuration"), "{refused}");
+    let closed = DesignObjective::named("closed:mean", Sense::Maximise).unwrap();
+    let dof = DesignObjective::named("dof:smallest", Sense::Maximise).unwrap();
+    let found = of(&[closed, maximise("type_ii"), dof]).evaluate(&[0.6]).unwrap();
+    let options = SweepOptions {
+        source: source.clone(),
+        quantities: vec![Quantity::Measures],
+        ..SweepOptions::default()
+    };
+    let own = five_bar.with(&[("rod", 0.6)]).unwrap();
+    let table = Sweep::new(&own, options).unwrap().table(0..64).unwrap();
+    let smallest = table.numbers("type_ii").unwrap().iter().fold(f64::INFINITY, |a, b| a.min(*b));
+    let Some(Values::Counts(closed)) = table.column("closed") else { panic!() };
+    let share = closed.iter().sum::<u64>() as f64 / 64.0;
+    assert!(share > 0.0 && share < 1.0);
+    assert_eq!(found, [share, smallest, 2.0]);
+}
+
+#[test]
+fn what_is_done_is_counted() {
+    let mut seen = Vec::new();
+    let own = options(&[range("rod", 0.5, 0.7)], &[minimise("anisotropy")]);
+    let own = OptimisationOptions { starts: 2, evaluations: 50, ..own };
+    let search = Optimisation::new(&five_bar(), own).unwrap();
+    let found = search.run(None, |progress| {
+        seen.push(*progress);
+        true
+    });
+    let found = found.unwrap().unwrap();
+    let last = seen.last().unwrap();
+    assert!(last.unit == "designs" && last.at_most && last.rows == 64 + 2 * 50, "{last:?}");
+    assert_eq!(last.done, found.evaluated);
+    assert!(seen.windows(2).all(|pair| pair[0].done <= pair[1].done));
 }
 
 #[test]

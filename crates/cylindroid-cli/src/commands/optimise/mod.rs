@@ -3,17 +3,16 @@
 mod report;
 
 use std::io::Write;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use cylindroid::control::Task;
 use cylindroid::sweep::{DesignObjective, Optimisation, OptimisationOptions, Sense, SweepOptions};
-use indicatif::{ProgressBar, ProgressDrawTarget};
 
 use self::report::Report;
 use crate::args::OptimiseArgs;
 use crate::commands::configurations::Chosen;
 use crate::commands::interrupt::Interrupt;
-use crate::commands::progress::interrupted;
+use crate::commands::progress::{Bar, interrupted};
 use crate::commands::shared::{Style, end_effector, load, parametric};
 use crate::exit::Exit;
 use crate::output;
@@ -53,15 +52,13 @@ pub(crate) fn run(args: &OptimiseArgs, style: Style, out: &mut dyn Write) -> any
     let search = Optimisation::new(&model, options)?;
     let interrupt = Interrupt::new();
     let started = Instant::now();
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    bar.enable_steady_tick(Duration::from_millis(500));
-    let found = search.run(args.threads, |evaluated| {
-        bar.set_message(format!("{evaluated} designs"));
-        bar.set_position(evaluated);
+    let bar = Bar::new();
+    let found = search.run(args.threads, |progress| {
+        bar.show(progress);
         !interrupt.came()
-    })?;
-    bar.finish_and_clear();
-    let Some(found) = found else { return interrupted() };
+    });
+    drop(bar);
+    let Some(found) = found? else { return interrupted() };
     let configurations = chosen.words(&source, search.configurations());
     let seconds = started.elapsed().as_secs_f64();
     let report = Report::of(&robot, (args, &search, &found), configurations, &workspace, seconds);

@@ -57,7 +57,9 @@ fn lines(
     writer.write_record(sweep.columns().iter().map(|c| &c.name)).map_err(failed)?;
     let mut start = 0;
     while start < all {
-        if !observe(&Progress { unit: "rows", rows: all, done: start, computed: start }) {
+        let progress =
+            Progress { unit: "rows", rows: all, at_most: false, done: start, computed: start };
+        if !observe(&progress) {
             return Ok(false);
         }
         let end = all.min(start + BLOCK);

@@ -11,7 +11,7 @@
 //!          the families
 //! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/threads.rs
 
-use super::super::workers::{Watch, Workers};
+use super::super::workers::{Counted, Watch, Workers};
 use super::flood::{Blocked, Flooded};
 use super::grid::Grid;
 use super::problem::Problem;
@@ -106,7 +106,7 @@ pub(super) fn loci(
 ) -> Result<Vec<Locus>> {
     let families = families(problem, grid, modes);
     let seeds: u64 = families.iter().map(|family| family.seeds.len() as u64).sum();
-    workers.begin("seeds", seeds, 0);
+    workers.begin(Counted { unit: "seeds", all: seeds, at_most: false }, 0);
     let found = workers.run(families.len(), |(): &mut (), family, watch| {
         families[family].loci(problem, axes, watch)
     })?;

@@ -6,7 +6,7 @@
 //! Valid    any mechanism. Modes may be missed if they fill few cells; the number of starts finds more
 //! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/threads.rs
 
-use super::super::workers::Workers;
+use super::super::workers::{Counted, Workers};
 use super::flood::{Flooded, flood};
 use super::grid::Grid;
 use super::options::MapOptions;
@@ -72,7 +72,7 @@ pub(super) fn modes(
     );
     let searches = searches(problem, grid, options);
     let starts: u64 = searches.iter().map(|search| search.options.starts as u64).sum();
-    workers.begin("starts", starts, 0);
+    workers.begin(Counted { unit: "starts", all: starts, at_most: false }, 0);
     let found = workers.run(searches.len(), |(): &mut (), number, watch| {
         let Search { guess, options, .. } = &searches[number];
         let go_on = || {
@@ -106,7 +106,9 @@ pub(super) fn modes(
             }
             // The others of this cell are modes too, unless limits or a singularity rule them out.
             let (before, left) = (modes.len() as u64, (found.len() - number) as u64);
-            workers.begin("cells", cells * (before + left), cells * before);
+            let all = cells * (before + left);
+            // Modes reach a part of them, and the ways to the others are not counted.
+            workers.begin(Counted { unit: "cells", all, at_most: true }, cells * before);
             modes.push(flood(problem, grid, &mut path, (cell, q), workers)?);
             if !workers.goes_on() {
                 return Ok(modes);

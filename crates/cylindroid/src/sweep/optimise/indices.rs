@@ -4,12 +4,15 @@
 //!          are those to be minimised and the negatives of the others
 //! Units    those of the columns
 //! Valid    a design has an index if it has a mechanism at each point of the workspace and the column
-//!          is finite in each row; the rows of a closed chain must be closed. Otherwise it is refused,
-//!          with the reason
+//!          is finite in each row; poses must be reached, and the rows of a closed chain closed.
+//!          Otherwise it is refused, with the reason. Where `reached` or `closed` is an objective
+//!          itself, other indices are those of the rows in which it is 1, one at least
 //! Why so   a mean or a smallest value over the configurations that happen to have one would prefer
-//!          designs that lose the others
+//!          designs that lose the others, and counts of rows without a configuration are zeros that
+//!          mean nothing. An objective states the share that is reached and weighs it
 //! Checked  tests/sweep/optimise.rs::indices_are_those_of_the_sweep,
-//!          tests/sweep/optimise.rs::designs_without_an_index_are_told
+//!          tests/sweep/optimise.rs::designs_without_an_index_are_told,
+//!          tests/sweep/optimise.rs::rows_without_a_configuration_are_no_zeros
 
 use super::super::axis::Axis;
 use super::super::capability;
@@ -17,6 +20,7 @@ use super::super::designs::{DesignSpace, Designs, ParameterRange};
 use super::super::job::Sweep;
 use super::super::options::SweepOptions;
 use super::super::quantity::Quantity;
+use super::super::source::{REACHED, Source};
 use super::super::table::{Column, ColumnKind, Values};
 use super::options::{DesignObjective, OptimisationOptions, Sense, Statistic};
 use crate::closure::ParametricModel;
@@ -48,9 +52,17 @@ pub(super) struct Indices {
     pub(super) objectives: Vec<DesignObjective>,
     /// The columns of the objectives.
     places: Vec<usize>,
-    /// The column that says whether loops are closed.
-    closed: Option<usize>,
+    presence: Option<Presence>,
     pub(super) end_effector: EndEffector,
+}
+
+/// The column that says whether a row has a configuration: that poses are reached, otherwise that
+/// loops are closed.
+#[derive(Debug, Clone, Copy)]
+struct Presence {
+    place: usize,
+    /// True if it is an objective, so that rows without a configuration are left out of the others.
+    is_objective: bool,
 }
 
 /// What a column has had so far.
@@ -79,9 +91,10 @@ impl Indices {
         }
         let mut objectives = options.objectives.clone();
         objectives.sort();
+        let of_poses = matches!(options.sweep.source, Source::Poses { .. });
         let mut quantities: Vec<Quantity> = Vec::new();
         for objective in &objectives {
-            quantities.push(quantity_of(nominal, &objective.index)?);
+            quantities.extend(quantity_of(nominal, of_poses, &objective.index)?);
         }
         if nominal.is_closed() {
             quantities.push(Quantity::Measures);
@@ -105,11 +118,15 @@ impl Indices {
             place(&o.index).ok_or_else(|| Error::unknown("index", &o.index, names))
         });
         let places = places.collect::<Result<Vec<_>>>()?;
-        let closed = place("closed").filter(|_| nominal.is_closed());
+        let presence =
+            if of_poses { Some(REACHED) } else { nominal.is_closed().then_some("closed") };
+        let presence = presence
+            .and_then(place)
+            .map(|place| Presence { place, is_objective: places.contains(&place) });
         let grid = |axes: &Vec<Axis>| DesignSpace::Grid(axes.clone());
         let workspace = Some(&options.workspace).filter(|axes| !axes.is_empty()).map(grid);
         let points = workspace.as_ref().map_or(Ok(1), |grid| grid.checked_count(model))?;
-        Ok(Self { designs, ranges, workspace, points, objectives, places, closed, end_effector })
+        Ok(Self { designs, ranges, workspace, points, objectives, places, presence, end_effector })
     }
 
     /// Number of sampled designs.
@@ -174,8 +191,24 @@ impl Indices {
         if found.iter().all(|x| x.is_finite()) {
             return Ok(found);
         }
+        if gathered.iter().any(|all| all.count == 0) {
+            let reason = "no configuration is reached or closed".to_owned();
+            return Err(Refusal::WithoutIndex(reason));
+        }
         // Sums overflow only for numbers that no mechanism has.
         Err(Refusal::WithoutIndex("an index overflows".to_owned()))
+    }
+
+    /// Why a row has no index, and the way to designs that have it.
+    fn absent(&self, row: u64) -> String {
+        let (what, name) = match self.designs.options.source {
+            Source::Poses { .. } => (format!("pose {row} is not reached"), REACHED),
+            Source::Samples { .. } => {
+                (format!("no straight path of the drives reaches configuration {row}"), "closed")
+            }
+            _ => (format!("the loops of configuration {row} are open"), "closed"),
+        };
+        format!("{what}; with {name}:mean as an index too, others are those of the rest")
     }
 
     fn at_point(
@@ -203,16 +236,26 @@ impl Indices {
             let end = configurations.rows.min(start + ROWS);
             capability::run(&evaluator, &configurations, columns, start..end, &mut rows)
                 .map_err(|error| without(error.to_string()))?;
-            if let Some(Values::Counts(closed)) = self.closed.and_then(|place| rows.get(place))
-                && let Some(row) = closed.iter().position(|closed| *closed == 0)
+            let present = self.presence.and_then(|own| match rows.get(own.place) {
+                Some(Values::Counts(present)) => Some((own, present)),
+                _ => None,
+            });
+            if let Some((own, present)) = present
+                && let (false, Some(row)) =
+                    (own.is_objective, present.iter().position(|present| *present == 0))
             {
-                let row = start + row as u64;
-                return Err(without(format!("the loops of configuration {row} are open")));
+                return Err(without(self.absent(start + row as u64)));
             }
             for (all, place) in gathered.iter_mut().zip(&self.places) {
+                let counts = |row: usize| match present {
+                    Some((own, present)) => own.place == *place || present[row] == 1,
+                    None => true,
+                };
                 let bad = match rows.get(*place) {
-                    Some(Values::Numbers(numbers)) => all.add(numbers.iter().copied()),
-                    Some(Values::Counts(counts)) => all.add(counts.iter().map(|c| *c as f64)),
+                    Some(Values::Numbers(numbers)) => all.add(numbers.iter().copied(), counts),
+                    Some(Values::Counts(all_counts)) => {
+                        all.add(all_counts.iter().map(|c| *c as f64), counts)
+                    }
                     _ => None,
                 };
                 if let Some((row, x)) = bad {
@@ -228,9 +271,14 @@ impl Indices {
 }
 
 impl Gathered {
-    /// Adds numbers up to the first that is not finite, which is returned with its place.
-    fn add(&mut self, numbers: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
-        for (row, x) in numbers.enumerate() {
+    /// Adds numbers of rows that count, up to the first that is not finite, which is returned with its
+    /// place.
+    fn add(
+        &mut self,
+        numbers: impl Iterator<Item = f64>,
+        counts: impl Fn(usize) -> bool,
+    ) -> Option<(usize, f64)> {
+        for (row, x) in numbers.enumerate().filter(|(row, _)| counts(*row)) {
             if !x.is_finite() {
                 return Some((row, x));
             }
@@ -243,8 +291,11 @@ impl Gathered {
     }
 }
 
-/// The quantity that has a column.
-fn quantity_of(nominal: &Mechanism, index: &str) -> Result<Quantity> {
+/// The quantity that has a column; none has that of poses that are reached.
+fn quantity_of(nominal: &Mechanism, of_poses: bool, index: &str) -> Result<Option<Quantity>> {
+    if of_poses && index == REACHED {
+        return Ok(None);
+    }
     let possible = Quantity::ALL.into_iter().filter(|q| !nominal.is_closed() || q.has_loops());
     // More singular values than there are have no column in the end.
     let columns = |q: Quantity| q.columns(nominal, 6);
@@ -253,11 +304,12 @@ fn quantity_of(nominal: &Mechanism, index: &str) -> Result<Quantity> {
         for Column { name, kind, .. } in columns(quantity) {
             if kind != ColumnKind::Text {
                 if name == index {
-                    return Ok(quantity);
+                    return Ok(Some(quantity));
                 }
                 names.push(name);
             }
         }
     }
+    names.extend(of_poses.then(|| REACHED.to_owned()));
     Err(Error::unknown("index", index, names))
 }

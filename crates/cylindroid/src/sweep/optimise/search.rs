@@ -14,7 +14,7 @@ use std::cell::RefCell;
 use std::num::NonZeroUsize;
 
 use super::super::Progress;
-use super::super::workers::Workers;
+use super::super::workers::{Counted, Workers};
 use super::indices::{Indices, Refusal};
 use super::options::{DesignObjective, OptimisationOptions, Sense};
 use super::pareto::{Extent, distinct, front, layers, spread};
@@ -139,20 +139,20 @@ impl Optimisation {
         self.indices.configurations()
     }
 
-    /// Searches. `threads` as in [`Sweep::write`](super::super::Sweep::write); `observe` gets the number
-    /// of designs evaluated so far, several times a second, and says whether to go on; `None` if it
-    /// does not. Results do not depend on the number of threads.
+    /// Searches. `threads` and `observe` as in [`Sweep::write`](super::super::Sweep::write), with
+    /// evaluated designs in place of rows; `None` if `observe` stopped the run. Results do not depend
+    /// on the number of threads.
     ///
     /// # Errors
     /// None now; those of a computation.
     pub fn run(
         &self,
         threads: Option<NonZeroUsize>,
-        mut observe: impl FnMut(u64) -> bool,
+        mut observe: impl FnMut(&Progress) -> bool,
     ) -> Result<Option<Optimum>> {
-        let mut evaluated = |progress: &Progress| observe(progress.done);
-        let mut workers = Workers::new(threads, &mut evaluated);
+        let mut workers = Workers::new(threads, &mut observe);
         let count = usize::try_from(self.indices.samples()).unwrap_or(usize::MAX);
+        workers.begin(Counted { unit: "designs", all: self.designs_at_most(), at_most: true }, 0);
         let sampled = workers.run(count, |(): &mut (), design, watch| {
             let x = self.indices.sample(design as u64);
             let found = self.indices.costs(&self.indices.values(&x));
@@ -201,6 +201,13 @@ impl Optimisation {
             refined.extend(ends);
         }
         Ok(Some(self.optimum(samples, refined, tally)))
+    }
+
+    /// Designs that are evaluated at most.
+    fn designs_at_most(&self) -> u64 {
+        let (starts, width) = (self.options.starts, self.indices.objectives.len());
+        let refinements = if width > 1 { starts + width * starts.min(1) } else { starts };
+        self.indices.samples() + refinements as u64 * self.options.evaluations
     }
 
     /// The ends of refinements.
