@@ -131,7 +131,7 @@ pub(crate) struct SweepArgs {
     pub(crate) reach_from: Option<Numbers<6>>,
 
     /// The quantities of each configuration, see below
-    /// [default: pose,yoshikawa,smallest_singular_value,limit_distance; of a closed chain
+    /// [default: pose,yoshikawa,smallest_singular_value,limit_distance,gibson_hunt; of a closed chain
     /// pose,measures; of --reach none]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) quantities: Vec<String>,

@@ -116,7 +116,9 @@ def sweep(
     quantities : sequence of str
         Of 'pose', 'jacobian', 'singular_values', 'smallest_singular_value', 'condition',
         'yoshikawa', 'limit_distance', 'payload', 'gibson_hunt', 'measures'; of closed chains
-        'pose', 'limit_distance', 'payload' and 'measures'.
+        'pose', 'limit_distance', 'payload' and 'measures'. Default: 'pose', 'yoshikawa',
+        'smallest_singular_value', 'limit_distance' and 'gibson_hunt', of closed chains 'pose' and
+        'measures'.
     frame : str, optional
         One of `frames`. Default: the tool, of a closed chain its reference.
     tool : array_like, (4, 4), optional

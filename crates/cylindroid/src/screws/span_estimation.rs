@@ -162,7 +162,10 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
     }
     let found = decompose(&used, scale, options, amplification(&scale));
     // Of the space, not of the twists that span it: the threshold is then the same for all of them.
-    let lever = found.span.largest_angular_part() * scale.center.norm() / scale.length;
+    let lever = match scale.center.norm() / scale.length {
+        0.0 => 0.0,
+        away => found.span.largest_angular_part() * away,
+    };
     let factor = NOISE_CONDITION * lever.hypot(1.0);
     let tolerance = Tolerances {
         rank: found.rank.threshold,
@@ -181,6 +184,10 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
 /// previous one and in which the angular parts are orthogonal: unique as long as the choice
 /// matters.
 fn center_of(twists: &[Twist], start: Scale, turning: f64) -> Scale {
+    if twists.len() == 6 {
+        // All of space is the same at every point, of which the origin is nearest to itself.
+        return Scale { center: Vec3::ZERO, ..start };
+    }
     let at = |scale: Scale| Span::of_independent(twists.iter().map(|t| scale.apply(*t)));
     let origin = Scale { center: Vec3::ZERO, ..start };
     // The origin is a start that all twists of the space share, unless axes are far from it.

@@ -101,7 +101,13 @@ impl Quantity {
         if mechanism.is_closed() {
             &[Self::Pose, Self::Measures]
         } else {
-            &[Self::Pose, Self::Yoshikawa, Self::SmallestSingularValue, Self::LimitDistance]
+            &[
+                Self::Pose,
+                Self::Yoshikawa,
+                Self::SmallestSingularValue,
+                Self::LimitDistance,
+                Self::GibsonHunt,
+            ]
         }
     }
 

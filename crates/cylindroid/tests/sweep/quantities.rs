@@ -4,7 +4,7 @@ use cylindroid::closure::{ClosedChain, MotionSpace};
 use cylindroid::ik::Task;
 use cylindroid::linalg::Svd;
 use cylindroid::manipulability::{BatchOptions, Manipulability, ManipulabilityBatch, Metrics};
-use cylindroid::screws::ScrewOptions;
+use cylindroid::screws::{Class, ScrewOptions};
 use cylindroid::sweep::{
     Quantity, Source, Statistics, Sweep, SweepOptions, Values, VelocityMetric,
 };
@@ -128,9 +128,23 @@ fn tasks_and_metrics_are_those_of_manipulability() {
     }
 }
 
+/// What a sweep computes where no quantities are named.
+#[test]
+fn usual_quantities() {
+    let usual = |model| Quantity::usual(&cylindroid::load(model).unwrap());
+    let names: Vec<&str> = usual("panda").iter().map(|q| q.name()).collect();
+    let all = ["pose", "yoshikawa", "smallest_singular_value", "limit_distance", "gibson_hunt"];
+    assert_eq!(names, all);
+    assert_eq!(usual("five-bar"), [Quantity::Pose, Quantity::Measures]);
+    // A regular arm of seven joints moves in all directions.
+    let table = samples("panda", 20, usual("panda")).table(0..20).unwrap();
+    let Some(Values::Texts(classes)) = table.column("gibson_hunt") else { panic!() };
+    assert!(classes.iter().all(|found| *found == Class::Full.name()), "{classes:?}");
+}
+
 #[test]
 fn screw_systems_are_those_of_screws() {
-    for model in ["youbot", "3r", "ur5e"] {
+    for model in ["youbot", "3r", "ur5e", "panda"] {
         let robot = cylindroid::load(model).unwrap();
         let table = samples(model, 50, &[Quantity::GibsonHunt]).table(0..50).unwrap();
         let Some(Values::Texts(classes)) = table.column("gibson_hunt") else { panic!() };
