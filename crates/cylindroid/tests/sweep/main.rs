@@ -12,6 +12,7 @@ mod closed_samples;
 mod designs;
 mod errors;
 mod folder;
+mod invariance;
 mod optimise;
 mod own_columns;
 mod parts;
