@@ -20,7 +20,7 @@ pub(crate) use closed::{
     AssembleArgs, ClosedArgs, GraspArgs, ManipulabilityArgs, MeasureName, MetricName, MobilityArgs,
     StaticsArgs,
 };
-pub(crate) use distance::{CollisionArgs, DistanceArgs};
+pub(crate) use distance::{CollisionArgs, DistanceArgs, MeshName};
 pub(crate) use ik::IkArgs;
 pub(crate) use manual::{CompletionsArgs, ManArgs};
 pub(crate) use map::MapArgs;

@@ -19,6 +19,7 @@ use pyo3::types::{PyBytes, PyDict};
 use self::files::{configurations, poses};
 use self::own_columns::{Given, OwnColumns};
 use crate::arrays::Numbers;
+use crate::collision::PyCollisionModel;
 use crate::coordinates::Coordinates;
 use crate::error::{Failure, Result, argument, entry};
 use crate::mechanism::PyMechanism;
@@ -114,7 +115,8 @@ impl PySweepPlan {
         configurations = None, quantities = None, frame = None, tool = None, task = None,
         metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new(),
         direction = None, reach = None, directions = VoxelGrid::DIRECTIONS,
-        rolls = VoxelGrid::ROLLS, reach_from = None, poses = None))]
+        rolls = VoxelGrid::ROLLS, reach_from = None, poses = None,
+        collision = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
@@ -138,6 +140,7 @@ impl PySweepPlan {
         #[pyo3(from_py_with = argument)] rolls: u64,
         reach_from: Option<Numbers<'_>>,
         poses: Option<Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = argument)] collision: Option<PyRef<'_, PyCollisionModel>>,
     ) -> Result<Self> {
         let robot = &*mechanism;
         let mechanism = robot.inner.clone();
@@ -194,6 +197,7 @@ impl PySweepPlan {
                 Some(direction) => Vec3::from_array(direction.entries("direction")?),
                 None => SweepOptions::default().direction,
             },
+            collision: collision.map(|model| model.inner.clone()),
             part_rows,
         };
         let sweep = match space {

@@ -12,6 +12,32 @@ import xxhash
 
 import cylindroid as cy
 
+CRANE = """
+[[joint]]
+name = "lift"
+type = "prismatic"
+between = ["ground", "hook"]
+axis = [0, 0, 1]
+limits = { lower = -1.5, upper = 2.0 }
+[[collision]]
+link = "hook"
+shape = "sphere"
+radius = 0.1
+[[joint]]
+name = "rope"
+type = "prismatic"
+between = ["hook", "load"]
+axis = [1, 0, 0]
+[[joint]]
+name = "brake"
+type = "prismatic"
+between = ["load", "block"]
+axis = [0, 1, 0]
+[[collision]]
+link = "block"
+shape = "sphere"
+radius = 0.2
+"""
 QUANTITIES = ["pose", "jacobian", "yoshikawa", "limit_distance", "gibson_hunt"]
 
 
@@ -51,6 +77,30 @@ def test_payloads_reach_a_limit():
         cy.sweep(robot, samples=2, quantities=["payload"], direction=[0.0, 0, 0])
     with pytest.raises(cy.DimensionError, match="direction"):
         cy.sweep(robot, samples=2, quantities=["payload"], direction=[0.0, 1.0])
+
+
+def test_distances_to_collision_are_those_of_the_model():
+    crane = cy.Mechanism.from_text(CRANE, format="toml")
+    model = cy.CollisionModel(crane)
+    model.add_obstacle("floor", "half_space", [0, 0, -1])
+    q = np.stack([np.linspace(-1.5, 2.0, 8), np.linspace(0.0, 0.5, 8), np.zeros(8)], 1)
+    found = cy.sweep(crane, configurations=q, quantities=["self_distance", "obstacle_distance"],
+                     collision=model)
+    for row, own in enumerate(q):
+        near = model.near(own, margin=np.inf)
+        to_floor = ["floor" in pair for pair in near.pairs]
+        distances = np.asarray(near.distances)
+        assert found["obstacle_distance"][row] == distances[to_floor].min()
+        assert found["self_distance"][row] == distances[~np.array(to_floor)].min()
+    assert found["obstacle_distance"].min() < 0 < found["obstacle_distance"].max()
+    alone = cy.sweep(crane, configurations=q, quantities=["self_distance"])
+    assert np.array_equal(alone["self_distance"], found["self_distance"])
+    with pytest.raises(cy.InvalidOptionError, match="obstacle_distance.*no obstacle"):
+        cy.sweep(crane, samples=2, quantities=["obstacle_distance"])
+    with pytest.raises(cy.InvalidOptionError, match="no link has a collision shape"):
+        cy.sweep(cy.load("3r"), samples=2, quantities=["self_distance"])
+    with pytest.raises(cy.InvalidOptionError, match="collision"):
+        cy.sweep(cy.load("3r"), samples=2, quantities=["self_distance"], collision=model)
 
 
 def test_threads_change_nothing():

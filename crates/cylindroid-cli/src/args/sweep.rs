@@ -7,7 +7,8 @@ use std::str::FromStr;
 use clap::{ArgGroup, Args, ValueEnum};
 use cylindroid::sweep::{Axis, ParameterRange, VelocityMetric};
 
-use super::{FrameArgs, ModelArgs};
+use super::{CollisionArgs, FrameArgs, MeshName, ModelArgs};
+use crate::obstacle::ObstacleArg;
 use crate::values::{Joints, Numbers};
 
 pub(crate) const ABOUT: &str = "\
@@ -45,6 +46,8 @@ Examples:
   cylindroid sweep ur5e --poses poses.csv --quantities limit_distance,condition --out reached.csv
   cylindroid sweep ur5e --reach x=-1:1:21 --reach z=-0.5:1:16 --plot reach.svg
   cylindroid sweep panda --samples 1e4 --quantities pose,yoshikawa --plot cloud.svg
+  cylindroid sweep docs/cell.toml --samples 1e4 --quantities self_distance,obstacle_distance \
+    --obstacle ball=sphere:0.1@0.5,0,0.4
 
 Quantities:
   pose                     position and unit quaternion of the frame
@@ -54,12 +57,15 @@ Quantities:
   condition                the largest over the smallest of them
   yoshikawa                sqrt(det J J^T), in --metric
   limit_distance           smallest distance to a position limit, negative outside
+  self_distance            smallest distance of links that can collide, negative: penetration depth
+  obstacle_distance        the same of links to each --obstacle
   payload                  largest force along --direction [N] within the effort limits, without weight
   gibson_hunt              class and principal pitches of the screw system
   measures                 mobility, distances to singularities, kinematic efficiencies, in --metric
 
-For closed chains: pose, limit_distance, payload and measures. For --reach: \
-yoshikawa, smallest_singular_value, condition, limit_distance and payload. Exit code 130 after an \
+For closed chains: pose, limit_distance, self_distance, obstacle_distance, payload and measures. \
+For --reach: yoshikawa, smallest_singular_value, condition, limit_distance, self_distance, \
+obstacle_distance and payload. Exit code 130 after an \
 interrupt.";
 
 #[derive(Debug, Args)]
@@ -158,6 +164,14 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) direction: Option<Numbers<3>>,
 
+    /// An obstacle of obstacle_distance in the world, as for `distance`; repeatable
+    #[arg(long, value_name = "NAME=SHAPE@POSE", allow_hyphen_values = true)]
+    pub(crate) obstacle: Vec<ObstacleArg>,
+
+    /// Shape that stands for a mesh in self_distance and obstacle_distance [default: convex_hull]
+    #[arg(long, value_name = "SHAPE")]
+    pub(crate) meshes: Option<MeshName>,
+
     /// Folder of the Parquet files, or a file that ends in .csv
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -182,6 +196,13 @@ pub(crate) struct SweepArgs {
     /// Number of threads [default: that of the processor]
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     pub(crate) threads: Option<NonZeroUsize>,
+}
+
+impl SweepArgs {
+    /// The shapes of distances, as those of `distance`.
+    pub(crate) fn collision(&self) -> CollisionArgs {
+        CollisionArgs { obstacle: self.obstacle.clone(), meshes: self.meshes, samples: None }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

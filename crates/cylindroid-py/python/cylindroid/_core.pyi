@@ -1887,6 +1887,7 @@ class SweepPlan:
         rolls: int = ...,
         reach_from: ArrayLike | None = None,
         poses: Any = None,
+        collision: CollisionModel | None = None,
     ) -> SweepPlan: ...
     @property
     def parts(self) -> int: ...

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _engines
-from ._core import Mechanism, SweepPlan
+from ._core import CollisionModel, Mechanism, SweepPlan
 from ._errors import ArgumentTypeError, refused
 
 
@@ -84,6 +84,7 @@ def sweep(
     rolls: int = 12,
     reach_from: ArrayLike | None = None,
     poses: Any = None,
+    collision: CollisionModel | None = None,
 ) -> Any:
     """Quantities of many configurations: samples within the limits, a grid, configurations, or those that
     reach poses; or of the points of a capability map.
@@ -115,8 +116,9 @@ def sweep(
         '.feather' or '.ipc'), which needs pyarrow.
     quantities : sequence of str
         Of 'pose', 'jacobian', 'singular_values', 'smallest_singular_value', 'condition',
-        'yoshikawa', 'limit_distance', 'payload', 'gibson_hunt', 'measures'; of closed chains
-        'pose', 'limit_distance', 'payload' and 'measures'. Default: 'pose', 'yoshikawa',
+        'yoshikawa', 'limit_distance', 'self_distance', 'obstacle_distance', 'payload',
+        'gibson_hunt', 'measures'; of closed chains 'pose', 'limit_distance', 'self_distance',
+        'obstacle_distance', 'payload' and 'measures'. Default: 'pose', 'yoshikawa',
         'smallest_singular_value', 'limit_distance' and 'gibson_hunt', of closed chains 'pose' and
         'measures'.
     frame : str, optional
@@ -159,7 +161,8 @@ def sweep(
         number; those not named are 0, z changes fastest. Inverse kinematics is asked at each point for
         `directions` times `rolls` orientations of the tool, within the limits. Quantities are those
         of which the best value over the solutions found is meant: 'yoshikawa',
-        'smallest_singular_value', 'condition', 'limit_distance' and 'payload'. Default: none.
+        'smallest_singular_value', 'condition', 'limit_distance', 'self_distance',
+        'obstacle_distance' and 'payload'. Default: none.
     directions : int
         Approach directions of the tool's z axis, evenly spread over the sphere, in the plane angles;
         0: positions alone.
@@ -171,6 +174,10 @@ def sweep(
         Poses `world_from_tool` that inverse kinematics reaches from home, in the components of `task`,
         positions within 1e-6 of the reach of the mechanism; a file has the columns 'x', 'y', 'z' [m] and, where rotations count, the quaternion
         'qw', 'qx', 'qy', 'qz'.
+    collision : CollisionModel, optional
+        Of this mechanism: the shapes, pairs and obstacles of 'self_distance' and 'obstacle_distance',
+        the smallest distances [m], negative in penetration. It is not pickled, so that it goes to
+        threads alone. Default: the shapes of the links, without obstacles.
 
     Returns
     -------
@@ -252,6 +259,7 @@ def sweep(
         "rolls": rolls,
         "reach_from": reach_from,
         "poses": poses,
+        "collision": collision,
     }
     plan = SweepPlan(**arguments)
     if not isinstance(resume, (bool, np.bool_)):

@@ -293,6 +293,26 @@ impl CollisionModel {
         self.scene.evaluate(pair).map_or(f64::NAN, |near| near.distance)
     }
 
+    /// The smallest distance at a configuration (m), of pairs with an obstacle or of the others: infinite
+    /// if there are none, NaN where one is beyond what numbers can represent. The state is of this
+    /// mechanism.
+    pub(crate) fn clearance(&mut self, state: &State, to_obstacles: bool) -> f64 {
+        self.scene.place(state);
+        let mut smallest = f64::INFINITY;
+        for pair in 0..self.scene.pairs.len() {
+            if (self.scene.pairs[pair].b >= self.links) != to_obstacles
+                || self.scene.gap_between_bounds(pair) > smallest
+            {
+                continue;
+            }
+            match self.scene.evaluate(pair) {
+                Some(near) => smallest = smallest.min(near.distance),
+                None => return f64::NAN,
+            }
+        }
+        smallest
+    }
+
     /// A bound of the way of a body for small changes of the coordinates (m).
     pub(crate) fn way(&self, state: &State, body: usize, change: &[f64]) -> f64 {
         way(state, &self.scene.bodies[body], change)

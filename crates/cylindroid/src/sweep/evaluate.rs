@@ -9,6 +9,7 @@ use std::ops::Range;
 use std::slice::IterMut;
 
 use super::capability::{Search, Voxels};
+use super::clearances::Clearances;
 use super::columns::append;
 use super::options::{SweepOptions, VelocityMetric};
 use super::payload::Payload;
@@ -44,6 +45,7 @@ pub(super) struct Evaluator {
     yoshikawa: Volume,
     payload: Option<Payload>,
     measures: Option<ManipulabilityBatch>,
+    pub(super) clearances: Option<Clearances>,
     /// Of a capability map.
     pub(super) search: Option<Search>,
 }
@@ -113,6 +115,7 @@ impl Evaluator {
             yoshikawa,
             payload,
             measures,
+            clearances: Clearances::new(mechanism, options)?,
             search,
         })
     }
@@ -228,6 +231,13 @@ impl Evaluator {
                 Q::LimitDistance => {
                     extend(columns, q.chunks_exact(n).map(|q| self.limit_distance(q)));
                 }
+                Q::SelfDistance | Q::ObstacleDistance => {
+                    if let Some(clearances) = &mut s.clearances {
+                        let to_obstacles = *quantity == Q::ObstacleDistance;
+                        let own = clearances.of(q, to_obstacles);
+                        extend(columns, own.map_err(|error| at_row(error, start))?.into_iter());
+                    }
+                }
                 Q::Payload => match &self.payload {
                     Some(payload) if payload.of_jacobian() => {
                         let rows = jacobians.chunks_exact(6 * n);
@@ -317,6 +327,7 @@ pub(super) struct Scratch {
     poses: Vec<f64>,
     jacobians: Vec<f64>,
     scaled: Vec<f64>,
+    clearances: Option<Clearances>,
 }
 
 impl Scratch {
@@ -336,6 +347,7 @@ impl Scratch {
             poses: size(e.wants(&[Q::Pose]), POSE),
             jacobians: size(jacobians, 6 * n),
             scaled: size(scaled, e.values()),
+            clearances: e.clearances.clone(),
         }
     }
 }

@@ -68,8 +68,9 @@ impl Sweep {
     /// # Errors
     /// Samples of a slider without limits or of a closed chain, an unknown or repeated coordinate,
     /// quantities that a closed chain does not have or that are named twice, unknown components, a
-    /// length that is not positive, a metric of limits that a joint does not have, own columns without
-    /// a name or with that of another column; of a capability map own columns, quantities that are no
+    /// length that is not positive, a metric of limits that a joint does not have, collision shapes
+    /// that no link has or of another mechanism, obstacles that are missing, own columns without a name
+    /// or with that of another column; of a capability map own columns, quantities that are no
     /// index, and orientations that too few joints reach; of poses components that inverse kinematics
     /// does not take, and poses that are not finite.
     pub fn new(mechanism: &Mechanism, options: SweepOptions) -> Result<Self> {
@@ -120,7 +121,8 @@ impl Sweep {
     ///
     /// # Errors
     /// Those of [`Sweep::new`] for the nominal design; unknown or repeated parameters, ranges beyond
-    /// those of the file, a parameter with the name of a coordinate, own columns.
+    /// those of the file, a parameter with the name of a coordinate, own columns, given
+    /// collision shapes.
     pub fn of_designs(
         model: &ParametricModel,
         space: DesignSpace,
@@ -131,6 +133,15 @@ impl Sweep {
                 option: "columns",
                 value: column.name.clone(),
                 reason: "own columns see configurations, not designs; sweep one design at a time"
+                    .to_owned(),
+            });
+        }
+        if options.collision.is_some() {
+            return Err(Error::InvalidOption {
+                option: "collision",
+                value: model.nominal().name().to_owned(),
+                reason: "these shapes are those of one design; each has those of its own links \
+                         without this option, and no obstacles"
                     .to_owned(),
             });
         }

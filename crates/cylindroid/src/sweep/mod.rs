@@ -26,6 +26,7 @@
 mod axis;
 mod capability;
 mod checksum;
+mod clearances;
 mod closed_samples;
 mod collect;
 mod columns;

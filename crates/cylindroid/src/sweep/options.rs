@@ -1,10 +1,11 @@
 //! The options of a sweep.
 //!
-//! Checked  tests/sweep/quantities.rs, tests/sweep/pose_files.rs
+//! Checked  tests/sweep/quantities.rs, tests/sweep/pose_files.rs, tests/sweep/clearances.rs
 
 use super::own_columns::OwnColumn;
 use super::quantity::Quantity;
 use super::source::Source;
+use crate::collision::CollisionModel;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
 use crate::model::Mechanism;
@@ -34,6 +35,9 @@ pub struct SweepOptions {
     pub length: Option<f64>,
     /// The direction of [`Quantity::Payload`] in world axes, of any length: down by default.
     pub direction: Vec3,
+    /// Shapes and obstacles of [`Quantity::SelfDistance`] and [`Quantity::ObstacleDistance`], of this
+    /// mechanism: those of its links alone by default, also of each design.
+    pub collision: Option<CollisionModel>,
     /// Rows of a part, the unit of work and the file of [`Sweep::write`](super::Sweep::write).
     pub part_rows: u64,
 }
@@ -68,6 +72,7 @@ impl Default for SweepOptions {
             metric: VelocityMetric::Unit,
             length: None,
             direction: Vec3::new(0.0, 0.0, -1.0),
+            collision: None,
             part_rows: PART_ROWS,
         }
     }

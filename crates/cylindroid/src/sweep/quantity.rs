@@ -28,6 +28,11 @@ pub enum Quantity {
     Yoshikawa,
     /// Smallest distance to a position limit; negative outside.
     LimitDistance,
+    /// Smallest distance of links that can collide; negative: penetration depth. Of closed chains too.
+    SelfDistance,
+    /// Smallest distance of a link to an obstacle of [`SweepOptions::collision`](super::SweepOptions);
+    /// negative: penetration depth. Of closed chains too.
+    ObstacleDistance,
     /// Largest force at the frame's origin along [`SweepOptions::direction`](super::SweepOptions)
     /// that the actuated joints balance within their effort limits, without own weight and inertia;
     /// of closed chains too. Infinite where the structure alone bears it.
@@ -41,7 +46,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Pose,
         Self::Jacobian,
         Self::SingularValues,
@@ -49,6 +54,8 @@ impl Quantity {
         Self::Condition,
         Self::Yoshikawa,
         Self::LimitDistance,
+        Self::SelfDistance,
+        Self::ObstacleDistance,
         Self::Payload,
         Self::GibsonHunt,
         Self::Measures,
@@ -65,6 +72,8 @@ impl Quantity {
             Self::Condition => "condition",
             Self::Yoshikawa => "yoshikawa",
             Self::LimitDistance => "limit_distance",
+            Self::SelfDistance => "self_distance",
+            Self::ObstacleDistance => "obstacle_distance",
             Self::Payload => "payload",
             Self::GibsonHunt => "gibson_hunt",
             Self::Measures => "measures",
@@ -84,6 +93,8 @@ impl Quantity {
             Self::Condition => "largest over smallest of these singular values",
             Self::Yoshikawa => "Yoshikawa's measure sqrt(det J J^T) in the metric",
             Self::LimitDistance => "smallest distance to a position limit, negative outside",
+            Self::SelfDistance => "smallest distance of links that can collide, negative inside",
+            Self::ObstacleDistance => "smallest distance of a link to an obstacle, negative inside",
             Self::Payload => {
                 "largest force along the direction within the effort limits, without weight"
             }
@@ -134,7 +145,13 @@ impl Quantity {
 
     /// True if loops do not invalidate it: the others are of the Jacobian of the spanning tree.
     pub(super) const fn has_loops(self) -> bool {
-        matches!(self, Self::Pose | Self::LimitDistance | Self::Payload | Self::Measures)
+        self.sees_collisions()
+            || matches!(self, Self::Pose | Self::LimitDistance | Self::Payload | Self::Measures)
+    }
+
+    /// True if it is a distance of collision shapes.
+    pub(super) const fn sees_collisions(self) -> bool {
+        matches!(self, Self::SelfDistance | Self::ObstacleDistance)
     }
 
     /// Its columns; `values`: number of singular values.
@@ -168,6 +185,7 @@ impl Quantity {
             Self::SmallestSingularValue | Self::Condition => vec![number(self.name(), "1")],
             Self::Yoshikawa => vec![number(self.name(), "m and rad, of the metric")],
             Self::LimitDistance => vec![number(self.name(), "rad or m, of the joint")],
+            Self::SelfDistance | Self::ObstacleDistance => vec![number(self.name(), "m")],
             Self::Payload => vec![number(self.name(), "N")],
             Self::GibsonHunt => {
                 let class = Column::text(self.name(), self.description());

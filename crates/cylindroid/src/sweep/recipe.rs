@@ -60,6 +60,14 @@ impl Recipe {
         if options.quantities.contains(&Quantity::Payload) {
             recipe.0["direction"] = json!(options.direction.to_array());
         }
+        if let Some(clearances) = &evaluator.clearances {
+            let model = &clearances.model;
+            let shapes = format!("{:?} {:?}", model.bodies(), model.pairs());
+            recipe.0["collision"] = json!({
+                "obstacles": model.obstacles().collect::<Vec<_>>(),
+                "checksum": Checksum::of(shapes.as_bytes()),
+            });
+        }
         if !options.columns.is_empty() {
             let own = |c: &OwnColumn| json!({"name": c.name, "unit": c.unit, "version": c.version});
             recipe.0["own_columns"] = options.columns.iter().map(own).collect();

@@ -8,6 +8,7 @@
 )]
 
 mod capability;
+mod clearances;
 mod closed_samples;
 mod designs;
 mod errors;

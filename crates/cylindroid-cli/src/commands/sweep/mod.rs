@@ -8,16 +8,18 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use cylindroid::collision::CollisionModel;
 use cylindroid::control::Task;
 use cylindroid::sweep::{
     Axis, DesignSpace, ParameterRange, Progress, Quantity, Source, Sweep, SweepOptions,
     WriteOptions,
 };
-use cylindroid::{Error, Vec3};
+use cylindroid::{Error, Mechanism, Vec3};
 
 use self::report::{Head, Outcome};
 use crate::args::SweepArgs;
 use crate::commands::configurations::Chosen;
+use crate::commands::distance::collision_model;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::progress::{Bar, interrupted};
 use crate::commands::shared::{Style, end_effector, load, parametric};
@@ -41,6 +43,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         args.quantities.iter().map(|name| Quantity::named(name)).collect::<Result<_, _>>()?
     };
     let task = args.task.as_deref().map(|name| Task::named(name, &robot)).transpose()?;
+    let collision = collision(&robot, args, &quantities, space.is_some())?;
     let part_rows = Sweep::usual_part_rows(&robot, &source, space.is_some());
     let options = SweepOptions {
         source: source.clone(),
@@ -53,6 +56,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         direction: args
             .direction
             .map_or(SweepOptions::default().direction, |d| Vec3::from_array(d.0)),
+        collision,
         part_rows: args.part_rows.map_or(part_rows, |count| count.0),
     };
     let sweep = match space {
@@ -146,6 +150,26 @@ fn check_options_of_maps(args: &SweepArgs) -> anyhow::Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// The shapes of distances, if they are asked for; designs have their own.
+fn collision(
+    robot: &Mechanism,
+    args: &SweepArgs,
+    quantities: &[Quantity],
+    of_designs: bool,
+) -> anyhow::Result<Option<CollisionModel>> {
+    let wants = |quantity| quantities.contains(&quantity);
+    let given = args.meshes.is_some() || args.model.srdf.is_some();
+    if !args.obstacle.is_empty() && !wants(Quantity::ObstacleDistance) {
+        anyhow::bail!("--obstacle is seen by obstacle_distance alone; name it in --quantities");
+    }
+    let own = match (wants(Quantity::SelfDistance), wants(Quantity::ObstacleDistance)) {
+        (false, false) => false,
+        _ => !of_designs || given || !args.obstacle.is_empty(),
+    };
+    let model = || collision_model(robot, &args.collision(), args.model.srdf.as_deref());
+    Ok(own.then(model).transpose()?)
 }
 
 /// The designs, if parameters vary.

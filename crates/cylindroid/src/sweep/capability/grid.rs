@@ -181,6 +181,8 @@ const fn is_index(quantity: Quantity) -> bool {
             | Quantity::Condition
             | Quantity::Yoshikawa
             | Quantity::LimitDistance
+            | Quantity::SelfDistance
+            | Quantity::ObstacleDistance
             | Quantity::Payload
     )
 }
@@ -208,7 +210,7 @@ pub(in super::super) fn columns(
                 value: quantity.name().to_owned(),
                 reason:
                     "a capability map has the best value of yoshikawa, smallest_singular_value, \
-                         condition, limit_distance or payload"
+                         condition, limit_distance, self_distance, obstacle_distance or payload"
                         .to_owned(),
             });
         }
