@@ -8,7 +8,7 @@ import pytest
 import cylindroid as cy
 
 rng = np.random.default_rng(4)
-CLOSED = ["four-bar", "five-bar", "3rrr", "stewart", "delta", "watt", "two-arm"]
+CLOSED = ["four-bar", "five-bar", "3rrr", "3rps", "stewart", "delta", "watt", "two-arm"]
 
 
 @pytest.mark.parametrize("name", [*CLOSED, "panda"])
@@ -366,7 +366,7 @@ def test_frames_of_a_urdf_close_a_loop(tmp_path):
 
 
 def test_screw_systems_of_closed_chains():
-    for name, rank in [("delta", 3), ("stewart", 6), ("five-bar", 2), ("3rrr", 3)]:
+    for name, rank in [("delta", 3), ("3rps", 3), ("stewart", 6), ("five-bar", 2), ("3rrr", 3)]:
         assert cy.load(name).screw_system().rank == rank
     arm = cy.load("ur5e")
     q = arm.home + 0.1

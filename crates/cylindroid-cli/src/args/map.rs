@@ -28,6 +28,7 @@ pub(crate) const EXAMPLES: &str = "\
 Examples:
   cylindroid map five-bar --actuated q1,q5 --over x=-1:3:200 --over y=-1:3:200 --plot map.svg
   cylindroid map 3rrr --over x=-0.4:0.4:81 --over y=-0.4:0.4:81 --at rz=0.2 --out map.csv
+  cylindroid map 3rps --over pitch=-1.5:1.5:61 --over roll=-1.5:1.5:61 --plot map.svg
   cylindroid map stewart --over x=-0.4:0.4:41 --over y=-0.4:0.4:41 --at z=1.1
   cylindroid map panda --over x=0:0.8:41 --over z=0:1:51 --free yaw
 

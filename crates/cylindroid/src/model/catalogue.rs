@@ -23,12 +23,12 @@ pub struct Entry {
     pub contacts: usize,
 }
 
-const NAMES: [&str; 13] = [
-    "panda", "ur5e", "puma560", "iiwa14", "youbot", "3r", "four-bar", "five-bar", "3rrr",
+const NAMES: [&str; 14] = [
+    "panda", "ur5e", "puma560", "iiwa14", "youbot", "3r", "four-bar", "five-bar", "3rrr", "3rps",
     "stewart", "delta", "watt", "two-arm",
 ];
 
-const TEXTS: [&str; 13] = [
+const TEXTS: [&str; 14] = [
     include_str!("catalogue/panda.toml"),
     include_str!("catalogue/ur5e.toml"),
     include_str!("catalogue/puma560.toml"),
@@ -38,6 +38,7 @@ const TEXTS: [&str; 13] = [
     include_str!("catalogue/four-bar.toml"),
     include_str!("catalogue/five-bar.toml"),
     include_str!("catalogue/3rrr.toml"),
+    include_str!("catalogue/3rps.toml"),
     include_str!("catalogue/stewart.toml"),
     include_str!("catalogue/delta.toml"),
     include_str!("catalogue/watt.toml"),

@@ -207,6 +207,21 @@ fn stewart() {
 }
 
 #[test]
+fn three_rps() {
+    let m = load("3rps").unwrap();
+    // Three revolute joints and slides, one ball in the tree; two balls close it.
+    assert_eq!(shape(&m), (3 * 2 + 3, 2, 0, 3, Dimension::Spatial));
+    for i in 1..=3 {
+        let (r, s) = (origin(&m, &format!("r{i}")), origin(&m, &format!("s{i}")));
+        // Joints on circles of 1 and 0.5, 1 m above one another, in a plane with the axis of the robot.
+        assert!((r.norm() - 1.0).abs() < 1e-12 && ((s - r).norm() - 1.25_f64.sqrt()).abs() < 1e-12);
+        let joint = m.joints().iter().find(|j| j.name == format!("r{i}")).unwrap();
+        assert!(joint.axis.dot(r).abs() < 1e-12 && joint.axis.dot(s).abs() < 1e-12);
+    }
+    assert_close(tool(&m, m.home()), Pose::from_translation(Vec3::Z), 1e-14);
+}
+
+#[test]
 fn delta() {
     let m = load("delta").unwrap();
     // Three arms, six universal joints, one ball; five balls close it.

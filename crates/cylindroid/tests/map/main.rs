@@ -17,4 +17,5 @@ mod robots;
 #[path = "../it/support.rs"]
 mod support;
 mod threads;
+mod three_rps;
 mod zone;

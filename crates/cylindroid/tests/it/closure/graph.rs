@@ -59,6 +59,7 @@ fn counts_of_the_catalogue() {
     for (name, expected) in [
         ("four-bar", [1, 0, 0, 0, 2, 0, 0]),
         ("3rrr", [3, 0, 0, 0, 0, 0, 0]),
+        ("3rps", [3, 0, 0, 0, 3, 0, 0]),
         ("stewart", [6, 0, 0, 0, 0, 0, 0]),
         ("watt", [1, 0, 0, 0, 2, 0, 0]),
         ("two-arm", [8, 2, 0, 6, 0, 0, 0]),
