@@ -46,8 +46,7 @@ Examples:
   cylindroid sweep ur5e --poses poses.csv --quantities limit_distance,condition --out reached.csv
   cylindroid sweep ur5e --reach x=-1:1:21 --reach z=-0.5:1:16 --plot reach.svg
   cylindroid sweep panda --samples 1e4 --quantities pose,yoshikawa --plot cloud.svg
-  cylindroid sweep docs/cell.toml --samples 1e4 --quantities self_distance,obstacle_distance \
-    --obstacle ball=sphere:0.1@0.5,0,0.4
+  cylindroid sweep docs/cell.toml --samples 1e4 --quantities self_distance
 
 Quantities:
   pose                     position and unit quaternion of the frame

@@ -1,41 +1,33 @@
 //! The type II locus of the 3-RPS of the catalogue: three planes of forces and the platform in a point.
 
+use std::f64::consts::TAU;
+
 use cylindroid::sweep::{LocusKind, Map, MapOptions};
 use cylindroid::{Mechanism, Vec3, catalogue};
 
 use crate::five_bar::axis;
 
-/// The determinant of the planes of the forces that the legs transmit, and that of the balls, in a
-/// configuration: zero where they meet in a point, at infinity too.
-///
-/// A leg transmits the forces through its ball in the plane of the slide and the axis of the base joint.
-/// With the slides locked the platform moves where these three pencils and it have a point in common: all
-/// wrenches then meet one line of the platform through this point, or they do at infinity.
+/// The determinant of four planes in a configuration: those of the forces that the legs transmit, and
+/// that of the balls. With the slides locked a leg transmits the forces through its ball that lie in the
+/// plane of the ball and of the axis of the base joint; the platform moves nevertheless where the four
+/// planes meet in a point, at infinity too.
 fn of_planes(mechanism: &Mechanism, q: &[f64]) -> f64 {
-    let state = mechanism.state(q).unwrap();
-    let rods: Vec<_> = (1..=3)
-        .map(|i| {
-            let pose = |link: String| state.pose(mechanism.frame(&link).unwrap()).unwrap();
-            let home = mechanism.state(mechanism.home()).unwrap();
-            let at_home = |link: String| home.pose(mechanism.frame(&link).unwrap()).unwrap();
-            let angle = core::f64::consts::TAU * f64::from(i - 1) / 3.0;
-            let (ball, base) = (
-                Vec3::new(0.5 * angle.cos(), 0.5 * angle.sin(), 1.0),
-                Vec3::new(angle.cos(), angle.sin(), 0.0),
-            );
-            let tangent = Vec3::new(-angle.sin(), angle.cos(), 0.0);
-            let rod = pose(format!("rod{i}")) * at_home(format!("rod{i}")).inverse();
-            let ball = rod * ball;
-            (ball, (ball - base).cross(tangent))
-        })
-        .collect();
-    let balls: Vec<Vec3> = rods.iter().map(|(ball, _)| *ball).collect();
+    let (state, home) = (mechanism.state(q).unwrap(), mechanism.state(mechanism.home()).unwrap());
+    let leg = |i: usize| {
+        let (s, c) = (TAU * i as f64 / 3.0).sin_cos();
+        let rod = mechanism.frame(&format!("rod{}", i + 1)).unwrap();
+        let moved = state.pose(rod).unwrap() * home.pose(rod).unwrap().inverse();
+        let ball = moved * Vec3::new(0.5 * c, 0.5 * s, 1.0);
+        (ball, (ball - Vec3::new(c, s, 0.0)).cross(Vec3::new(-s, c, 0.0)))
+    };
+    let legs = [0, 1, 2].map(leg);
+    let balls = legs.map(|(ball, _)| ball);
     let normal = (balls[1] - balls[0]).cross(balls[2] - balls[0]);
     let plane = |point: Vec3, normal: Vec3| {
         let n = normal * (1.0 / normal.norm());
         [n.x, n.y, n.z, -n.dot(point)]
     };
-    let mut rows: Vec<[f64; 4]> = rods.iter().map(|(ball, n)| plane(*ball, *n)).collect();
+    let mut rows: Vec<[f64; 4]> = legs.iter().map(|(ball, n)| plane(*ball, *n)).collect();
     rows.push(plane(balls[0], normal));
     determinant(&rows)
 }
@@ -50,7 +42,8 @@ fn determinant(rows: &[[f64; 4]]) -> f64 {
     rows[0][0] * three(0) - rows[0][1] * three(1) + rows[0][2] * three(2) - rows[0][3] * three(3)
 }
 
-/// Over two tilts at the height of home, with the parasitic motions that follow from them.
+/// Ebert-Uphoff, Lee & Lipkin 2002, Characteristic tetrahedron of wrench singularities for parallel
+/// manipulators with three legs. Over two tilts at the height of home; the other motions follow.
 #[test]
 fn the_locus_is_where_four_planes_meet() {
     let mechanism = catalogue::load("3rps").unwrap();
