@@ -1,7 +1,7 @@
 //! Workers: threads that compute the parts of a search or of a map, count what they do, and end where
 //! the observer stops them.
 //!
-//! Checked  the test below, tests/sweep/optimise.rs, tests/map/threads.rs
+//! Checked  tests in this file, tests/sweep/optimise.rs, tests/map/threads.rs
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
