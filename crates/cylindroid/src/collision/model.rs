@@ -296,6 +296,7 @@ impl CollisionModel {
     /// The smallest distance at a configuration (m), of pairs with an obstacle or of the others: infinite
     /// if there are none, NaN where one is beyond what numbers can represent. The state is of this
     /// mechanism.
+    #[cfg(feature = "sweep")]
     pub(crate) fn clearance(&mut self, state: &State, to_obstacles: bool) -> f64 {
         self.scene.place(state);
         let mut smallest = f64::INFINITY;
