@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { addBeside, apart, beside, browserOfFile, enter, openPanel, picture, saved, served, state, untilBeside, untilBesideAt } from "./lib.mjs";
+import { addBeside, apart, beside, browserOfFile, enter, openFiles, openPanel, picture, saved, served, state, untilBeside, untilBesideAt } from "./lib.mjs";
 
 const { look, visit } = browserOfFile();
 const folder = await mkdtemp(join(tmpdir(), "cylindroid-beside-"));
@@ -177,3 +177,69 @@ test("models beside the first are recorded and played with it, here and on a pag
     await untilDrawnAt(film, "film", track.states[at].links);
     await picture(film, "beside-film");
   }));
+
+test("CSV and plots have all models, each by its name, as it was sent last", () =>
+  visit(["3r"], async (page) => {
+    await addBeside(page, "3r");
+    await untilBeside(page, ["3r"]);
+    await page.getByRole("button", { name: "Record" }).click();
+    const field = (/** @type {number} */ i) => page.locator(`[data-panel="beside-${i}"] .field`).first();
+    await openPanel(page, "beside-1");
+    await enter(field(1), 0.75);
+    await untilBesideAt(page, 0, 0.75);
+    // One that comes later has no values before, one that goes none after.
+    await addBeside(page, "ur5e");
+    await untilBeside(page, ["3r", "ur5e"]);
+    await openPanel(page, "beside-2");
+    await enter(field(2), -0.5);
+    await untilBesideAt(page, 1, -0.5);
+    await page.getByRole("button", { name: "Remove the model beside, 1" }).click();
+    await untilBeside(page, ["ur5e"]);
+    await enter(field(2), 0.25);
+    await untilBesideAt(page, 0, 0.25);
+    await page.getByRole("button", { name: /^Stop recording/ }).click();
+    const all = JSON.parse(await saved(page, "Save the recording as JSON"));
+    const text = await saved(page, "Save the recording as CSV");
+    const [head = [], ...rows] = text.trim().split("\r\n").map((line) => line.split(","));
+    const joints = (/** @type {any} */ one, prefix = "") => one.joint_names.map((/** @type {string} */ name) => prefix + name);
+    const [copy, other] = all.beside;
+    const names = [["", all], ["3r 2.", copy], ["ur5e.", other]];
+    assert.equal(head[0], "time");
+    assert.equal(new Set(head).size, head.length);
+    assert.ok(rows.every((row) => row.length === head.length));
+    const times = rows.map(([time]) => Number(time));
+    const wanted = [...new Set([all, copy, other].flatMap((one) => one.times))].sort((a, b) => a - b);
+    assert.deepEqual(times, wanted);
+    for (const [prefix, one] of names) {
+      const places = joints(one, prefix).map((/** @type {string} */ name) => head.indexOf(name));
+      assert.ok(places.every((/** @type {number} */ place) => place > 0), `${prefix} of ${head}`);
+      rows.forEach((row, i) => {
+        const state = one.states[Math.max(one.times.findLastIndex((/** @type {number} */ time) => time <= (times[i] ?? NaN)), 0)];
+        const shown = places.map((/** @type {number} */ place) => row[place]);
+        const isThere = shown[0] !== "";
+        if (isThere) assert.deepEqual(shown.map(Number), state.q);
+        else assert.ok(shown.every((/** @type {string} */ value) => value === "") && prefix !== "");
+      });
+    }
+    const there = (/** @type {string} */ name) => rows.map((row) => row[head.indexOf(name)] !== "");
+    const [first, second] = [there(joints(copy, "3r 2.")[0]), there(joints(other, "ur5e.")[0])];
+    assert.deepEqual([first[0], first.at(-1), second[0], second.at(-1)], [true, false, false, true]);
+
+    // The same numbers in the plots, at the moment that is shown.
+    await page.evaluate((time) => /** @type {any} */ (window).viewer.timeline.player.seek(time), times.at(-1));
+    const line = (/** @type {string} */ name) => page.locator(`[data-plot="joints"] [data-line="${name}"]`);
+    await line("ur5e.shoulder_pan_joint").getByText("0.2500").waitFor();
+    for (const name of [...joints(all), ...joints(copy, "3r 2."), ...joints(other, "ur5e.")]) assert.equal(await line(name).count(), 1, name);
+    assert.equal(await page.locator('[data-plot="singular"] [data-line="ur5e.σ6"] .dotted').count(), 1);
+    const gaps = await page.evaluate(() => {
+      const { plot } = /** @type {any} */ (window).viewer.timeline.plots.charts.get("joints");
+      return plot.data.slice(1).map((/** @type {(number | null)[]} */ values) => [values[0] === null, values.at(-1) === null]);
+    });
+    assert.deepEqual(gaps, [...Array(3).fill([false, false]), ...Array(3).fill([false, true]), ...Array(6).fill([true, false])]);
+    await picture(page, "beside-plots");
+    // The file is one of the first model, too.
+    const path = join(folder, "beside.csv");
+    await writeFile(path, text);
+    await openFiles(page, path);
+    await page.waitForFunction((count) => /** @type {any} */ (window).viewer.timeline.recording?.length === count, rows.length);
+  }, { width: 1366, height: 768 }));

@@ -5,8 +5,8 @@ import { fixed, short } from "../format";
 import { colour } from "../theme";
 import { digitsOf, shown, unitOf } from "../units";
 import { AT_LIMIT, SINGULAR } from "./columns";
-import { MOST_LINES, type Kind, type Line } from "./kinds";
-import type { Recording } from "./recording";
+import { linesOf, type Kind, type Line } from "./kinds";
+import type { Together } from "./together";
 
 const HEIGHT = 138;
 /** Below the largest value a logarithmic plot ends. */
@@ -17,6 +17,9 @@ export const MARKS = [
   { mark: AT_LIMIT, name: "limit", colour: "c-axes", words: "a limit bounds a joint" },
 ];
 const STRIPE = 4;
+/** Dashes and gaps of a line (pixels): lines beyond the colours and thresholds are dashed, those of models beside the first dotted. */
+const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 3] };
+export type Style = keyof typeof DASHES;
 
 type Figure = { line: Line; value: HTMLElement };
 
@@ -31,6 +34,7 @@ export class Chart {
   private stretches: [number, number][][] = [];
   private built = "";
   private time = 0;
+  private all: Together | null = null;
 
   constructor(readonly kind: Kind, private readonly seek: (time: number) => void) {
     this.host.setAttribute("aria-label", kind.title);
@@ -38,19 +42,20 @@ export class Chart {
   }
 
   /** All of a recording; what is there is drawn anew. */
-  show(recording: Recording): void {
-    const lines = this.kind.lines(recording);
-    const data = dataOf(recording, lines);
+  show(all: Together): void {
+    const { kept: lines, of } = linesOf(this.kind, all.models);
+    const data = dataOf(all, lines);
+    this.all = all;
     const present = lines.filter((_, i) => data[i + 1]?.some((value) => value !== null));
-    const all = recording.scene.coordinates.length;
-    const isPart = lines.length < all && lines.length === MOST_LINES;
     const units = [...new Set(lines.map((line) => this.unit(line)))].filter(Boolean);
-    const words = [units.length > 0 && `[${units.join(", ")}]`, this.kind.remark?.(recording), isPart && `${lines.length} of ${all}, those that move most`];
+    const remarks = new Set(all.models.map(({ recording }) => this.kind.remark?.(recording)));
+    const words = [units.length > 0 && `[${units.join(", ")}]`, ...remarks, lines.length < of && `${lines.length} of ${of}, those that move most`];
     text(this.note, present.length === 0 ? this.kind.none : words.filter(Boolean).join(" "));
     this.host.hidden = this.legend.hidden = present.length === 0;
     const width = this.element.clientWidth;
     if (present.length === 0 || width === 0) return;
-    this.stretches = MARKS.map(({ mark }) => recording.columns.stretches(mark));
+    const [first] = all.models;
+    this.stretches = MARKS.map(({ mark }) => first?.recording.columns.stretches(mark) ?? []);
     const built = JSON.stringify([lines.map((line) => [line.label, this.unit(line)]), getComputedStyle(document.documentElement).colorScheme]);
     if (this.plot && built === this.built) {
       if (this.plot.width !== width) this.plot.setSize({ width, height: HEIGHT });
@@ -60,13 +65,16 @@ export class Chart {
       this.built = built;
       this.build(lines, data, width);
     }
-    this.host.setAttribute("aria-label", `${this.kind.title} over ${fixed(recording.end, 2)} s, ${lines.length} lines; the values at the time shown are below`);
+    this.host.setAttribute("aria-label", `${this.kind.title} over ${fixed(all.times.at(-1) ?? 0, 2)} s, ${lines.length} lines; the values at the time shown are below`);
   }
 
-  /** The values and the place of a moment. */
-  at(index: number, time: number): void {
+  /** The values and the place of a moment: of the first model at a sample, of the others at a row of all times. */
+  at(index: number, time: number, row: number): void {
     this.time = time;
-    for (const { line, value } of this.figures) text(value, this.words(line, line.column.at(index)));
+    for (const { line, value } of this.figures) {
+      const sample = line.model === 0 ? index : this.all?.models[line.model]?.samples[row] ?? -1;
+      text(value, this.words(line, line.column.at(sample)));
+    }
     if (this.plot) this.now.style.transform = `translateX(${this.plot.valToPos(time, "x").toFixed(1)}px)`;
   }
 
@@ -76,8 +84,8 @@ export class Chart {
   }
 
   /** Lines in the order of the legend, for pictures. */
-  get entries(): { label: string; colour: string; isDashed: boolean }[] {
-    return this.figures.map(({ line }, i) => ({ label: line.label, colour: colour(COLOURS[i % COLOURS.length] ?? "ink"), isDashed: isDashed(line, i) }));
+  get entries(): { label: string; colour: string; style: Style }[] {
+    return this.figures.map(({ line }) => ({ label: line.label, colour: colour(colourOf(line)), style: styleOf(line) }));
   }
 
   destroy(): void {
@@ -117,10 +125,9 @@ export class Chart {
       ],
       series: [
         {},
-        ...lines.map((line, i): uPlot.Series => ({
+        ...lines.map((line): uPlot.Series => ({
           label: line.label, scale: scaleOf(this.unit(line)), width: 1.5, points: { show: false }, spanGaps: false,
-          stroke: () => colour(COLOURS[i % COLOURS.length] ?? "ink"),
-          ...(isDashed(line, i) ? { dash: [5, 3] } : {}),
+          stroke: () => colour(colourOf(line)), dash: DASHES[styleOf(line)],
           ...(stepped ? { paths: stepped } : {}),
         })),
       ],
@@ -137,9 +144,9 @@ export class Chart {
       if (plot.over.hasPointerCapture(event.pointerId)) seek(event);
     });
     this.figures = lines.map((line) => ({ line, value: h("span", { class: "number" }) }));
-    this.legend.replaceChildren(...this.figures.map(({ line, value }, i) => {
-      const swatch = h("span", { class: isDashed(line, i) ? "stroke dashed" : "stroke" });
-      swatch.style.setProperty("--swatch", `var(--${COLOURS[i % COLOURS.length] ?? "ink"})`);
+    this.legend.replaceChildren(...this.figures.map(({ line, value }) => {
+      const swatch = h("span", { class: `stroke ${styleOf(line)}` });
+      swatch.style.setProperty("--swatch", `var(--${colourOf(line)})`);
       return h("span", { class: "chart-entry", "data-line": line.label }, swatch, line.label, " ", value);
     }));
   }
@@ -161,8 +168,14 @@ export class Chart {
   }
 }
 
-function isDashed(line: Line, i: number): boolean {
-  return i >= COLOURS.length || line.label === "threshold";
+function styleOf({ model, rank, isThreshold }: Line): Style {
+  if (model > 0) return "dotted";
+  return rank >= COLOURS.length || isThreshold ? "dashed" : "solid";
+}
+
+/** The first two models have the same colours, so that a copy is compared with its like. */
+function colourOf({ model, rank }: Line): string {
+  return COLOURS[(rank + Math.max(model - 1, 0)) % COLOURS.length] ?? "ink";
 }
 
 function scaleOf(unit: string): string {
@@ -192,16 +205,13 @@ function powers(_: uPlot, places: number[]): (number | null)[] {
   return places.map((place) => (Math.abs(Math.log10(place) - Math.round(Math.log10(place))) < 1e-9 ? place : null));
 }
 
-function dataOf({ columns, duration, end }: Recording, lines: Line[]): uPlot.AlignedData {
-  const values = lines.map(({ column, quantity }) => {
+function dataOf({ times, models }: Together, lines: Line[]): uPlot.AlignedData {
+  const values = lines.map(({ column, quantity, model }) => {
     const scale = shown(1, quantity);
-    return Array.from(column.view(), (value) => (Number.isNaN(value) ? null : value * scale));
+    return Array.from(models[model]?.samples ?? [], (sample) => {
+      const value = column.at(sample);
+      return Number.isNaN(value) ? null : value * scale;
+    });
   });
-  const times = Array.from(columns.time.view());
-  if (end > duration) {
-    // The robot rests while what stands beside it moves.
-    times.push(end);
-    for (const own of values) own.push(own.at(-1) ?? null);
-  }
-  return [times, ...values] as uPlot.AlignedData;
+  return [Array.from(times), ...values];
 }

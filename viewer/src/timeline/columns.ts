@@ -86,14 +86,7 @@ export class Columns {
 
   /** The last sample at or before a time; the first one before all. */
   indexAt(time: number): number {
-    const times = this.time.view();
-    let [low, high] = [0, times.length];
-    while (high - low > 1) {
-      const middle = (low + high) >> 1;
-      if ((times[middle] ?? Infinity) <= time + ROUNDING) low = middle;
-      else high = middle;
-    }
-    return low;
+    return lastAt(this.time.view(), time);
   }
 
   /** The sample before or after this one at which a step of the user began, or the end on that side. */
@@ -129,6 +122,17 @@ export class Columns {
     if (begin !== null) found.push([begin, times.at(-1) ?? begin]);
     return found;
   }
+}
+
+/** The number of the last of these rising times at or before one; the first one before all. */
+export function lastAt(times: Float64Array, time: number): number {
+  let [low, high] = [0, times.length];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if ((times[middle] ?? Infinity) <= time + ROUNDING) low = middle;
+    else high = middle;
+  }
+  return low;
 }
 
 function absent(count: number): Column {

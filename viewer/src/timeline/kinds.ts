@@ -1,16 +1,19 @@
 /** What can be plotted over time. */
-import type { Coordinate } from "../protocol";
 import type { Quantity } from "../units";
 import type { Column } from "./columns";
 import type { Recording } from "./recording";
+import type { Model } from "./together";
 
-export type Line = { label: string; column: Column; quantity: Quantity };
+/** What a model has to plot; `moves`: of one coordinate, whose motion this is. */
+type Own = { label: string; column: Column; quantity: Quantity; isThreshold?: boolean; moves?: Column };
+/** `model`: its number among those of the recording; `rank`: its place among the lines of this model. */
+export type Line = Own & { model: number; rank: number };
 export type Kind = {
   name: string; title: string;
   /** After the unit of a line. */
   per: "" | "/s";
   logarithmic: boolean;
-  lines: (recording: Recording) => Line[];
+  lines: (recording: Recording) => Own[];
   /** Said beside the unit. */
   remark?: (recording: Recording) => string;
   /** Said where no sample has a value. */
@@ -18,7 +21,7 @@ export type Kind = {
 };
 
 /** Of more coordinates, those that move most are plotted. */
-export const MOST_LINES = 12;
+const MOST_LINES = 12;
 
 export const KINDS: Kind[] = [
   { name: "joints", title: "Joints", per: "", logarithmic: false, lines: (r) => ofCoordinates(r, r.columns.q), none: "The model has no coordinate." },
@@ -32,28 +35,37 @@ export const KINDS: Kind[] = [
   },
   {
     name: "singular", title: "Singular values", per: "", logarithmic: true, none: "The servo is not available: there are no singular values.",
-    lines: ({ columns }) => [...lines(columns.singular.map((_, i) => `σ${i + 1}`), columns.singular, []), { label: "threshold", column: columns.threshold, quantity: "" }],
+    lines: ({ columns }) => [
+      ...lines(columns.singular.map((_, i) => `σ${i + 1}`), columns.singular, []),
+      { label: "threshold", column: columns.threshold, quantity: "", isThreshold: true },
+    ],
   },
   { name: "margins", title: "Distances to limits", per: "", logarithmic: false, lines: (r) => ofCoordinates(r, r.columns.margins), none: "No coordinate has a limit." },
 ];
 
-function lines(labels: string[], columns: Column[], quantities: Quantity[]): Line[] {
+/** The lines of all models, those of models beside the first under their names; `of`: as many there would be. */
+export function linesOf({ lines }: Kind, models: Model[]): { kept: Line[]; of: number } {
+  const all = models.map(({ name, recording }, model) => lines(recording).map((line) => ({ ...line, model, label: model === 0 ? line.label : `${name}.${line.label}` })));
+  const moving = all.flat().flatMap((line) => (line.moves ? [{ line, range: range(line.moves) }] : []));
+  const least = moving.sort((a, b) => b.range - a.range).slice(MOST_LINES).map(({ line }) => line);
+  const kept = all.flatMap((own) => own.filter((line) => !least.includes(line)).map((line, rank) => ({ ...line, rank })));
+  return { kept, of: kept.length + least.length };
+}
+
+function lines(labels: string[], columns: Column[], quantities: Quantity[]): Own[] {
   return columns.map((column, i) => ({ label: labels[i] ?? "", column, quantity: quantities[i] ?? "" }));
 }
 
-function ofCoordinates({ scene, columns: { q } }: Recording, columns: Column[]): Line[] {
-  const all = scene.coordinates.map(({ name, unit }: Coordinate, i) => ({ i, name, unit, range: range(q[i]) }));
-  const most = [...all].sort((a, b) => b.range - a.range).slice(0, MOST_LINES).map(({ i }) => i);
-  const kept = all.length > MOST_LINES ? all.filter(({ i }) => most.includes(i)) : all;
-  return kept.flatMap(({ i, name, unit }) => {
-    const column = columns[i];
-    return column ? [{ label: name, column, quantity: unit }] : [];
+function ofCoordinates({ scene, columns: { q } }: Recording, columns: Column[]): Own[] {
+  return scene.coordinates.flatMap(({ name, unit }, i) => {
+    const [column, moves] = [columns[i], q[i]];
+    return column && moves ? [{ label: name, column, quantity: unit, moves }] : [];
   });
 }
 
-function range(column: Column | undefined): number {
+function range(column: Column): number {
   let [low, high] = [Infinity, -Infinity];
-  for (const value of column?.view() ?? []) {
+  for (const value of column.view()) {
     if (value < low) low = value;
     if (value > high) high = value;
   }

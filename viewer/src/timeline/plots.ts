@@ -1,21 +1,27 @@
 /** The plots of a recording: which are shown, their width, their picture. */
-import { h, type Child } from "../dom";
+import { h, text, type Child } from "../dom";
 import { panel } from "../panels/panel";
 import { colour, onTheme } from "../theme";
 import { inUnits } from "../units";
-import { Chart, MARKS } from "./chart";
+import { Chart, MARKS, type Style } from "./chart";
+import { lastAt } from "./columns";
 import { KINDS } from "./kinds";
 import type { Recording } from "./recording";
+import { together, type Together } from "./together";
 
 /** While a recording grows it is plotted again after this time (ms). */
 const PAUSE = 250;
 const SHOWN_FIRST = ["joints", "singular"];
+/** Parts of a line of 12 pixels that are drawn: where they begin, and how long they are. */
+const SWATCHES: Record<Style, [number, number][]> = { solid: [[0, 12]], dashed: [[0, 5], [8, 4]], dotted: [[0, 2], [5, 2], [10, 2]] };
 
 export class Plots {
   readonly panel = panel("plots", "Plots", true);
   private readonly charts = new Map<string, Chart>();
   private readonly list = h("div", { class: "charts" });
+  private readonly whose = h("span", {});
   private recording: Recording | null = null;
+  private all: Together | null = null;
   private width = 0;
   private timer = 0;
   private moment = { index: 0, time: 0 };
@@ -36,7 +42,7 @@ export class Plots {
       h("div", { class: "row" },
         h("span", { class: "chips", role: "group", "aria-label": "Plots shown" }, ...chips),
         saves.length > 0 && h("span", { class: "group", role: "group", "aria-label": "Save" }, ...saves), after),
-      h("p", { class: "note marks" }, ...MARKS.flatMap(({ name, words }) => [h("span", { class: `mark ${name}` }), `${words} `])),
+      h("p", { class: "note marks" }, ...MARKS.flatMap(({ name, words }) => [h("span", { class: `mark ${name}` }), `${words} `]), this.whose),
       this.list,
     );
     for (const name of SHOWN_FIRST) this.add(name);
@@ -51,7 +57,7 @@ export class Plots {
 
   /** Another recording, or none. */
   show(recording: Recording | null): void {
-    this.recording = recording;
+    [this.recording, this.all] = [recording, null];
     this.draw();
   }
 
@@ -62,7 +68,8 @@ export class Plots {
 
   at(index: number, time: number): void {
     this.moment = { index, time };
-    if (this.panel.isOpen()) for (const chart of this.charts.values()) chart.at(index, time);
+    const row = this.all ? lastAt(this.all.times, time) : 0;
+    if (this.panel.isOpen()) for (const chart of this.charts.values()) chart.at(index, time, row);
   }
 
   /** All plots that are shown, one below the other. */
@@ -78,16 +85,16 @@ export class Plots {
     const font = `${11 * scale}px system-ui, sans-serif`;
     context.font = font;
     const legends = shown.map(({ chart }) => legendOf(context, chart.entries, width, scale));
-    const marks = legendOf(context, MARKS.map(({ words, colour: name }) => ({ label: words, colour: colour(name), isDashed: false })), width, scale);
+    const marks = legendOf(context, MARKS.map(({ words, colour: name }) => ({ label: words, colour: colour(name), style: "solid" as const })), width, scale);
     canvas.width = width;
     canvas.height = shown.reduce((sum, one, i) => sum + one.canvas.height + title + line * rowsOf(legends[i]), line * rowsOf(marks));
     context.fillStyle = colour("panel");
     context.fillRect(0, 0, canvas.width, canvas.height);
     const write = (legend: Entry[], from: number): void => {
       context.font = font;
-      for (const { label, ink, isDashed, x, row } of legend) {
+      for (const { label, ink, style, x, row } of legend) {
         context.fillStyle = ink;
-        for (const [at, wide] of isDashed ? [[0, 5], [8, 4]] as const : [[0, 12]] as const) {
+        for (const [at, wide] of SWATCHES[style]) {
           context.fillRect(x + at * scale, from + row * line + 5 * scale, wide * scale, 3 * scale);
         }
         context.fillStyle = colour("ink");
@@ -127,12 +134,14 @@ export class Plots {
     this.timer = 0;
     this.width = this.list.clientWidth;
     if (!this.recording || this.recording.length === 0 || !this.panel.isOpen() || this.width === 0) return;
-    for (const chart of this.charts.values()) chart.show(this.recording);
+    const all = (this.all = together(this.recording));
+    text(this.whose, all.models.length > 1 ? `(${all.models[0]?.name} alone; lines of models beside it are dotted)` : "");
+    for (const chart of this.charts.values()) chart.show(all);
     this.at(this.moment.index, this.moment.time);
   }
 }
 
-type Entry = { label: string; ink: string; isDashed: boolean; x: number; row: number };
+type Entry = { label: string; ink: string; style: Style; x: number; row: number };
 
 /** Rows of a legend, one at least. */
 function rowsOf(legend: Entry[] = []): number {
@@ -140,14 +149,14 @@ function rowsOf(legend: Entry[] = []): number {
 }
 
 /** Where the names of lines are in a picture: in rows that end within its width; the end of a longer name is left out. */
-function legendOf(context: CanvasRenderingContext2D, entries: { label: string; colour: string; isDashed: boolean }[], width: number, scale: number): Entry[] {
+function legendOf(context: CanvasRenderingContext2D, entries: { label: string; colour: string; style: Style }[], width: number, scale: number): Entry[] {
   const [left, gap, swatch] = [52 * scale, 14 * scale, 16 * scale];
   let [x, row] = [left, 0];
-  return entries.map(({ label: whole, colour: ink, isDashed }) => {
+  return entries.map(({ label: whole, colour: ink, style }) => {
     const label = shortened(context, whole, width - left - swatch);
     const wide = swatch + context.measureText(label).width;
     if (x > left && x + wide > width) [x, row] = [left, row + 1];
-    const place = { label, ink, isDashed, x, row };
+    const place = { label, ink, style, x, row };
     x += wide + gap;
     return place;
   });

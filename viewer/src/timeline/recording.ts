@@ -140,30 +140,4 @@ export class Recording {
     });
     return [head.slice(0, -1), ',"states":[\n', this.raws.join(",\n"), "\n]"];
   }
-
-  /** One line for each state: the numbers of the head, SI and radians; an absent one stays empty. */
-  csv(): Blob {
-    const { coordinates } = this.sceneAt(0);
-    const pose = (name: string): string[] => ["x", "y", "z", "qw", "qx", "qy", "qz"].map((part) => `${name}_${part}`);
-    const head = [
-      "time", ...coordinates.map(({ name }) => name), ...coordinates.map(({ name }) => `velocity.${name}`), ...pose("tool"), ...pose("target"),
-      "position_error", "orientation_error", "smallest_over_largest", "rank", "status", "limits",
-    ];
-    const lines = this.raws.map((raw, i) => {
-      const state = JSON.parse(raw) as State;
-      return [
-        this.columns.time.at(i), ...state.q, ...coordinates.map((_, k) => state.servo.joint_velocities?.[k]),
-        ...state.tool.position, ...state.tool.quaternion,
-        ...state.target.position, ...state.target.quaternion, state.error.position, state.error.orientation,
-        state.singular?.ratio, state.singular?.rank, state.servo.status,
-        state.servo.limits.map(({ coordinate, kind }) => `${coordinates[coordinate]?.name ?? "?"} ${kind}`).join("; "),
-      ].map(cell).join(",");
-    });
-    return new Blob([[head.map(cell).join(","), ...lines].join("\r\n"), "\r\n"], { type: "text/csv" });
-  }
-}
-
-function cell(value: string | number | null | undefined): string {
-  const text = String(value ?? "");
-  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }

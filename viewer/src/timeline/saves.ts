@@ -4,6 +4,7 @@ import { download } from "../download";
 import type { Look } from "../film/film";
 import { filmPage } from "../film/page";
 import { icon } from "../icons";
+import { csvOf } from "./csv";
 import { frameTimes, MOST_FRAMES, zipped } from "./frames";
 import type { Recording } from "./recording";
 
@@ -32,7 +33,7 @@ export class Saves {
   constructor(private readonly source: Source) {
     this.elements = [
       this.button("the recording as JSON", "JSON", () => this.save("json", async (recording) => recording.json())),
-      this.button("the recording as CSV", "CSV", () => this.save("csv", async (recording) => recording.csv())),
+      this.button("the recording as CSV", "CSV", () => this.save("csv", async (recording) => csvOf(recording))),
       this.button("the plots as PNG", "PNG", () => this.save("png", () => source.plots(), "-plots")),
       this.button("HTML that plays the recording by itself", "HTML", () => this.save("html", (recording) => filmPage(recording, source.look()))),
     ];
