@@ -12,6 +12,8 @@ export class Restore {
   /** Of the session: it is gone when the connection is. */
   private about: About | null = null;
   private fresh = true;
+  /** This page drove a session that begins anew under another page, and drives again once that one does not. */
+  private drivesAgain = false;
   /** Who drove when the connection was lost; this page before. */
   drove: Driver = "you";
 
@@ -31,10 +33,13 @@ export class Restore {
       if (this.session.scene) this.apply(this.session.scene);
       this.camera();
     });
-    session.on("about", (about) => (this.about = about));
+    session.on("about", (about) => {
+      this.about = about;
+      this.driveAgain(about);
+    });
     session.on("link", ({ link }) => {
       if (link !== "lost" || this.fresh) return;
-      this.fresh = true;
+      [this.fresh, this.drivesAgain] = [true, false];
       const { scene, state } = session;
       const { about } = this;
       this.drove = about?.driver ?? "you";
@@ -68,6 +73,7 @@ export class Restore {
       this.wanted = last.shot;
       this.say("The connection is restored, with the previous configuration.");
     }
+    this.drivesAgain = about !== null && !about.program && this.drove === "you" && last !== null && about.begun !== last.begun;
     this.last = null;
     session.send({ type: "overlays", names: this.overlays.names() });
     // The robot is the program's, what stands beside it is of its pages.
@@ -75,7 +81,15 @@ export class Restore {
     this.apply(scene);
     // Whoever drove before drives again.
     if (isRestored && this.drove === "another") session.send({ type: "drive", on: false });
+    if (about) this.driveAgain(about);
     return true;
+  }
+
+  /** A page that came before this one brings the session back and lets go of it. */
+  private driveAgain({ driver }: About): void {
+    if (!this.drivesAgain || driver === "another") return;
+    this.drivesAgain = false;
+    if (driver === "nobody") this.session.send({ type: "drive", on: true });
   }
 
   /** Looks from where the address says; false where it says nothing. */

@@ -207,3 +207,59 @@ test("an observer opens no model: the page that drives does", () =>
       }, { expect: /WebSocket|net::ERR_/ });
     }, { expect: /WebSocket|net::ERR_/ });
   }));
+
+test("an observer that comes back before the driver lets it drive again", () =>
+  served(["panda"], async (first) => {
+    const opened = await (await fetch(`${first.url}models`, { method: "POST", body: '{"open": "ur5e"}\n' })).json();
+    const address = `${first.url}?model=${opened.id}&session=demo`;
+    const options = { expect: /WebSocket|net::ERR_/ };
+    await look(address, (driver) => look(address, async (observer) => {
+      await observer.locator(".role").getByText("Observing, 2 pages").waitFor();
+      await enter(driver.locator('[data-panel="joints"] .field').first(), 0.5);
+      for (const page of [driver, observer]) await until(page, "state.q[0] === 0.5");
+      await addBeside(driver, "3r");
+      for (const page of [driver, observer]) await untilBeside(page, ["3r"]);
+      await untilKept(driver, 2);
+      // The driver opens the model when it is told to, and comes when it is told to.
+      await driver.evaluate(() => {
+        const { connection } = /** @type {any} */ (window).viewer.session;
+        const renew = connection.renew.bind(connection);
+        connection.pause = 600;
+        connection.renew = () => {
+          connection.pause = 600;
+          renew();
+          connection.renew = () => Object.assign(window, { come: renew });
+        };
+      });
+      // The observer lets go when it is told to.
+      await observer.evaluate(() => {
+        const { session } = /** @type {any} */ (window).viewer;
+        const send = session.send.bind(session);
+        session.send = (/** @type {any} */ message) => {
+          if (message.type !== "drive") return send(message);
+          return Object.assign(window, { release: () => send(message) });
+        };
+      });
+      await first.stop();
+      for (const page of [driver, observer]) await page.getByText("The server has stopped.").waitFor();
+      await served(["panda", "--port", new URL(first.url).port], async () => {
+        await driver.getByRole("button", { name: "Reconnect now" }).click();
+        await driver.waitForFunction(() => "come" in window);
+        await observer.waitForFunction(() => "release" in window && /** @type {any} */ (window).viewer.session.drives);
+        await driver.evaluate(() => /** @type {any} */ (window).come());
+        await driver.locator(".role").getByText("Observing, 2 pages").waitFor();
+        await observer.evaluate(() => /** @type {any} */ (window).release());
+        await driver.locator(".role").getByText("Driving, 2 pages").waitFor();
+        await observer.locator(".role").getByText("Observing, 2 pages").waitFor();
+        for (const page of [driver, observer]) await until(page, "Math.abs(state.q[0] - 0.5) < 1e-9");
+        // So it does what stands beside the model.
+        for (const page of [driver, observer]) await untilBeside(page, ["3r"]);
+        const drives = (/** @type {Page} */ page) => page.evaluate(() => [.../** @type {any} */ (window).viewer.companions.all.values()].map(({ session }) => session.drives));
+        await driver.waitForFunction(() => [.../** @type {any} */ (window).viewer.companions.all.values()].every(({ session }) => session.drives));
+        assert.deepEqual(await drives(observer), [false]);
+        // Once: what it releases later is free.
+        await driver.locator('[data-role="drive"]').click();
+        await driver.locator(".role").getByText("Nobody drives, 2 pages").waitFor();
+      });
+    }, options), options);
+  }));

@@ -154,6 +154,10 @@ impl SharedSession {
         if inner.driver.is_none() && !observes {
             inner.driver = Some(id);
         }
+        let client = Client { view: ClientView::default(), mailbox: Arc::clone(&mailbox) };
+        inner.clients.insert(id, client);
+        // The client may read while this is written: what comes first is put first.
+        self.tell_roles(&inner);
         if let Some(told) = &inner.model {
             mailbox.put_model(told.clone());
         }
@@ -161,8 +165,6 @@ impl SharedSession {
         if let Some(program) = &inner.program {
             mailbox.put_drawings(program.drawings.text().into());
         }
-        inner.clients.insert(id, Client { view: ClientView::default(), mailbox });
-        self.tell_roles(&inner);
         inner.is_dirty = true;
         drop(inner);
         self.changed.notify_one();
@@ -423,6 +425,8 @@ impl Drop for Membership {
 
 #[cfg(test)]
 mod tests {
+    use std::iter::repeat_with;
+
     use cylindroid::catalogue;
 
     use super::*;
@@ -441,13 +445,35 @@ mod tests {
         }
     }
 
-    /// The clock stands still while a task has something to do.
-    #[tokio::test(start_paused = true)]
-    async fn states_come_at_once_after_a_pause_and_once_a_turn_otherwise() {
+    fn session(name: Option<&str>) -> Arc<SharedSession> {
         let robot = catalogue::load("panda").unwrap();
         let (q, tool) = (robot.home().to_vec(), robot.tool().into());
         let start = Start::new((robot, "panda"), &q, tool, &[], StartBodies::default()).unwrap();
-        let shared = SharedSession::begin(Arc::new(start), None, None).unwrap();
+        SharedSession::begin(Arc::new(start), name.map(str::to_owned), None).unwrap()
+    }
+
+    /// Pages take a session for one of their own where the scene comes without a role.
+    #[tokio::test]
+    async fn who_drives_comes_before_the_scene_however_fast_a_client_reads() {
+        let shared = session(Some("demo"));
+        shared.tell_model("model".into());
+        for _ in 0..300 {
+            let mailbox = Arc::new(Mailbox::default());
+            let reads = Arc::clone(&mailbox);
+            let all = move || repeat_with(|| reads.first()).flatten().take(3).collect::<Vec<_>>();
+            let reader = std::thread::spawn(all);
+            let _membership = shared.join(mailbox, false);
+            let messages = reader.join().unwrap();
+            assert!(messages[0].starts_with(r#"{"type":"session""#), "{}", messages[0]);
+            assert_eq!(messages[1], "model");
+            assert!(messages[2].starts_with(r#"{"type":"scene""#));
+        }
+    }
+
+    /// The clock stands still while a task has something to do.
+    #[tokio::test(start_paused = true)]
+    async fn states_come_at_once_after_a_pause_and_once_a_turn_otherwise() {
+        let shared = session(None);
         let mailbox = Arc::new(Mailbox::default());
         let membership = shared.join(Arc::clone(&mailbox), false);
         state(&mailbox).await;
