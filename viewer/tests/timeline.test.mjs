@@ -243,6 +243,65 @@ test("overlays and distances that were not recorded are those of the moment show
     assert.ok(axes && "axes" in axes && axes.axes.length >= 7);
   }));
 
+/**
+ * Chooses another controlled frame.
+ * @param {import("playwright-core").Page} page
+ */
+async function otherFrame(page) {
+  const name = await page.evaluate(() => {
+    const { session } = /** @type {any} */ (window).viewer;
+    const other = session.scene.frames.find((/** @type {any} */ one) => one.name !== session.scene.frame && one.link === 4);
+    session.send({ type: "frame", name: other.name });
+    return other.name;
+  });
+  await until(page, `scene.frame === ${JSON.stringify(name)}`);
+  return name;
+}
+
+test("answers that were computed for another frame are asked for again", () =>
+  visit(["panda"], async (page) => {
+    const { coordinates, home } = await page.evaluate(() => /** @type {any} */ (window).viewer.session.scene);
+    const heads = coordinates.map((/** @type {any} */ { name }) => name).join(",");
+    const path = await file("frames.csv", [`time,${heads}`, ...Array.from({ length: 200 }, (_, i) => `${i / 100},${home.join(",")}`)].join("\n"));
+    // The answer to the second question comes when it is told to.
+    await page.evaluate(() => {
+      const { session } = /** @type {any} */ (window).viewer;
+      const receive = session.receive.bind(session);
+      let answers = 0;
+      session.receive = (/** @type {string} */ raw) => {
+        if (raw.startsWith('{"type":"states"') && (answers += 1) === 2) Object.assign(window, { goOn: () => receive(raw) });
+        else receive(raw);
+      };
+    });
+    await openFiles(page, path);
+    await page.waitForFunction(() => "goOn" in window);
+    const frame = await otherFrame(page);
+    await until(page, "state.servo.status !== 'moving'");
+    await page.evaluate(() => /** @type {any} */ (window).goOn());
+    await page.waitForFunction(() => /** @type {any} */ (window).viewer.timeline.recording?.length === 200);
+    const { tools, of } = await page.evaluate(() => {
+      const { recording } = /** @type {any} */ (window).viewer.timeline;
+      return { of: recording.scene.frame, tools: Array.from({ length: 200 }, (_, i) => recording.stateAt(i).tool.position) };
+    });
+    assert.equal(of, frame);
+    const { tool } = await state(page);
+    for (const one of tools) assert.ok(apart(one, tool.position) < 1e-9, `${one} is not ${tool.position}`);
+  }));
+
+test("overlays of a recording are not those of another frame", () =>
+  visit(["panda"], async (page) => {
+    const { states } = await recordMotion(page);
+    await otherFrame(page);
+    await slider(page).focus();
+    await page.keyboard.press("Home");
+    await untilMoment(page, `moment?.seq === ${states[0].seq}`);
+    await page.locator('[data-overlay="velocity-ellipsoid"]').check();
+    await page.getByText(/Overlays and distances that were not recorded are not shown/).waitFor();
+    assert.equal((await moment(page))?.overlays["velocity-ellipsoid"], undefined);
+    await page.getByRole("button", { name: "live" }).click();
+    await until(page, 'state.overlays["velocity-ellipsoid"] !== undefined');
+  }));
+
 test("motions of move and CSV by the names of joints are opened, with what they say and what the server computes", (t) =>
   visit(["panda"], async (page) => {
     const csv = join(folder, "motion.csv");

@@ -4,7 +4,7 @@ import type { Posture, Scene, State, ToServer } from "../protocol";
 import type { Session } from "../session";
 import { STEP } from "./columns";
 import { Dock } from "./dock";
-import { Elsewhere } from "./elsewhere";
+import { Elsewhere, measuresAlike } from "./elsewhere";
 import { readMotion, type Motion, type Sample } from "./motion";
 import { Player } from "./player";
 import { Plots } from "./plots";
@@ -61,6 +61,7 @@ export class Timeline {
   /** The moment of the recording that is shown or will be. */
   private here: number | null = null;
   private later = 0;
+  private saidOf: Recording | null = null;
 
   constructor(dock: HTMLElement, private readonly session: Session, private readonly tell: Told) {
     this.player = new Player(() => this.move(), () => this.dock.playing(this.player.playing));
@@ -153,7 +154,7 @@ export class Timeline {
     this.live();
     this.replace(recording);
     try {
-      await this.elsewhere.askAll(samples.map(({ q }) => q), (i, posture) => {
+      const isWhole = await this.elsewhere.askAll(samples.map(({ q }) => q), (i, posture) => {
         const sample = samples[i];
         if (!sample) return;
         const state = stateOf(i, sample, posture, file.name, takesTarget);
@@ -165,6 +166,10 @@ export class Timeline {
         this.tell.changed(false, done);
         return true;
       });
+      if (!isWhole) {
+        if (this.recording === recording) await this.open(file);
+        return;
+      }
       if (!motion.hasTimes) this.tell.say(`${file.name} has no times: it is shown with 60 samples per second.`);
       if (!takesTarget) this.tell.say(`The motion of ${file.name} is that of ${motion.frame}; errors are of that frame, the tool and its singular values are of ${scene.frame}.`);
     } catch (error) {
@@ -192,8 +197,11 @@ export class Timeline {
     const state = recording.stateAt(wanted);
     if (!state) return;
     const moment = { scene: recording.sceneAt(wanted), state, index: wanted };
-    if (this.isComplete(state)) {
+    const { scene } = this.session;
+    const isOfScene = scene !== null && measuresAlike(scene, moment.scene);
+    if (!isOfScene || this.isComplete(state)) {
       this.show(moment);
+      if (!isOfScene) this.sayOther(recording, state);
       return;
     }
     this.asking = true;
@@ -201,6 +209,13 @@ export class Timeline {
       ([posture]) => this.answered(recording, { ...moment, state: completed(state, posture) }),
       () => this.answered(recording, moment),
     );
+  }
+
+  /** What the server would compute is of another frame, task, choice of actuated joints or version of the model: said once. */
+  private sayOther(recording: Recording, state: State): void {
+    if (recording === this.saidOf || this.isComplete(state)) return;
+    this.saidOf = recording;
+    this.tell.say("Overlays and distances that were not recorded are not shown: the robot has another frame, task, choice of actuated joints or version of its model now.");
   }
 
   private answered(recording: Recording, moment: Moment & { index: number }): void {
