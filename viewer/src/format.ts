@@ -21,7 +21,7 @@ export function short(value: number | null | undefined, digits = 3): string {
   }
   const [mantissa = "", exponent = "0"] = value.toExponential(digits - 1).split("e");
   const power = Number(exponent).toString().replace("-", MINUS);
-  return `${mantissa.replace("-", MINUS)}e${power}`;
+  return `${Number(mantissa).toString().replace("-", MINUS)}e${power}`;
 }
 
 /** "1 motion", "2 motions". */

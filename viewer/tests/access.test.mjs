@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { promisify } from "node:util";
-import { apart, BINARY, browserOfFile, moveTarget, openFiles, openPanel, saved, served, showOverlay, until } from "./lib.mjs";
+import { apart, BINARY, browserOfFile, moveTarget, openFiles, openPanel, picture, saved, served, showOverlay, until } from "./lib.mjs";
 
 const { look, visit } = browserOfFile();
 const folder = await mkdtemp(join(tmpdir(), "cylindroid-access-"));
@@ -93,10 +93,21 @@ for (const dark of [false, true]) {
       const path = join(folder, `${words}.html`);
       await writeFile(path, await saved(page, "Save HTML that plays the recording by itself"));
       const film = await page.context().newPage();
-      await film.setViewportSize(options);
       await film.goto(pathToFileURL(path).href);
       await film.waitForFunction(() => /** @type {any} */ (window).film?.stage.frames > 1);
-      assert.deepEqual(await violations(film), [], "the page of a recording");
+      const plots = film.getByRole("group", { name: "Plots shown" }).getByRole("button");
+      for (const plot of await plots.all()) if ((await plot.getAttribute("aria-pressed")) === "false") await plot.click();
+      for (const [width, height] of LOOKS.filter(([, , isDark]) => isDark === dark)) {
+        const size = `${width} x ${height}`;
+        await film.setViewportSize({ width, height });
+        assert.deepEqual(await violations(film), [], `the page of a recording, ${size}`);
+        await film.getByRole("button", { name: "Loop" }).click();
+        await film.getByRole("button", { name: "Play back" }).click();
+        assert.deepEqual(await violations(film), [], `the page of a recording that plays, ${size}`);
+        await film.getByRole("button", { name: "Pause playback" }).click();
+        await film.getByRole("button", { name: "Loop" }).click();
+        await picture(film, `film-${width}-${words}`);
+      }
     }, options));
 
   test(`axe-core finds no violation: an observer, ${words}`, () =>

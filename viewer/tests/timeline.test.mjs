@@ -88,6 +88,27 @@ test("a recording is scrubbed by keys, drawn as it was, and left; the robot does
     await page.locator('[data-panel="mobility"] > .doubt').waitFor({ state: "hidden" });
   }));
 
+test("the numbers of axes have room, also those of rounding", () =>
+  visit(["panda"], async (page) => {
+    await recordMotion(page);
+    for (const name of ["Joint velocities", "Error", "Distances to limits"]) await page.getByRole("button", { name, exact: true }).click();
+    // An angle of rounding alone.
+    const wide = await page.evaluate(() => {
+      const { plots, recording } = /** @type {any} */ (window).viewer.timeline;
+      const [, angles] = recording.columns.errors;
+      for (let i = 0; i < angles.length; i += 1) angles.values[i] = 1e-9 * (i % 3);
+      plots.draw();
+      return [...plots.charts.values()].flatMap(({ kind, plot }) => plot.axes.slice(1).flatMap((/** @type {any} */ axis) => {
+        const context = new OffscreenCanvas(1, 1).getContext("2d");
+        if (!context) return [];
+        context.font = "11px system-ui, sans-serif";
+        const gone = axis._values.filter((/** @type {string} */ words) => context.measureText(words).width > axis._size);
+        return [...gone, ...(axis._values.length > 0 ? [] : ["nothing"])].map((words) => `${kind.name}: ${words}`);
+      }));
+    });
+    assert.deepEqual(wide, []);
+  }));
+
 test("a recording has the times of the server, also where the page stands still", () =>
   visit(["panda"], async (page) => {
     // At rest nothing is sent: what was before the press does not count.

@@ -17,6 +17,8 @@ export const MARKS = [
   { mark: AT_LIMIT, name: "limit", colour: "c-axes", words: "a limit bounds a joint" },
 ];
 const STRIPE = 4;
+/** Of an axis whose numbers have their unit (pixels). */
+const WITH_UNIT = 70;
 /** Dashes and gaps of a line (pixels): lines beyond the colours and thresholds are dashed, those of models beside the first dotted. */
 const DASHES = { solid: [], dashed: [5, 3], dotted: [2, 3] };
 export type Style = keyof typeof DASHES;
@@ -117,7 +119,7 @@ export class Chart {
       axes: [
         { ...axis, size: 22, gap: 2, values: (_, all) => all.map((value) => `${short(value, 6)} s`) },
         ...units.map((unit, i): uPlot.Axis => ({
-          ...axis, scale: scaleOf(unit), side: i === 0 ? 3 : 1, size: 52, gap: 3,
+          ...axis, scale: scaleOf(unit), side: i === 0 ? 3 : 1, size: units.length > 1 ? WITH_UNIT : 52, gap: 3,
           grid: i === 0 ? { ...axis.grid, ...(log ? { filter: powers } : {}) } : { show: false },
           ...(log ? { filter: powers } : {}),
           values: (_, all) => all.map((value) => (value === null ? "" : `${log ? power(value) : short(value, 6)}${units.length > 1 ? ` ${unit}` : ""}`)),
