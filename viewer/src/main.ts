@@ -65,7 +65,7 @@ function start(): void {
     wanted: () => ({ overlays: overlays.names(), distances: distances.panel.isOpen() }),
     size: () => size,
     look: () => ({ camera: stage.place(), orthographic: stage.isOrthographic, overlays: [...overlays.on] }),
-    picture: () => stage.png(),
+    view: { picture: () => stage.png(), paint: (canvas) => stage.paintOn(canvas), size: () => stage.renderer.domElement },
     recordBeside: (recording) => companions.record(recording),
     showBeside: (past) => companions.showPast(past),
   });
@@ -195,7 +195,7 @@ function start(): void {
   page.plots.append(timeline.plots.panel.element);
   stage.scene.add(timeline.trail.group);
   const dialog = new OpenDialog((file) => void map.open(file).then((is) => (is ? undefined : timeline.open(file))), (id) => companions.add(id));
-  onDrop((files) => void dialog.take(files));
+  onDrop((files) => void dialog.take(files), (words) => page.toast(`What was dropped cannot be read: ${words}`, true));
   distances.panel.onToggle(() => timeline.refresh());
   const history = new History(session, timeline, (undo, redo) => bar.undoable(undo, redo));
   addEventListener("keydown", (event) => {

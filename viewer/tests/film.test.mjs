@@ -182,3 +182,48 @@ test("pictures at even times are a zip of numbered PNG", () =>
     await page.getByRole("button", { name: "Save frames as a zip of numbered PNG" }).click();
     await page.getByText("Frames per second are a number from 1 to 120.").waitFor();
   }));
+
+test("a video of the recording has the size of the view, and moves", (t) =>
+  visit(["panda"], async (page) => {
+    await record(page, "y", 0.2);
+    const before = await state(page);
+    await enter(page.getByLabel("Frames per second"), 10);
+    const name = await page.getByRole("button", { name: /^Save a video/ }).getAttribute("aria-label");
+    assert.equal(name, "Save a video (WEBM)");
+    const bytes = await saved(page, name, "base64");
+    const size = await page.evaluate(() => {
+      const { width, height } = /** @type {any} */ (window).viewer.stage.renderer.domElement;
+      return [width - (width % 2), height - (height % 2)];
+    });
+    assert.ok(apart((await state(page)).q, before.q) < 1e-4, "the session has not moved");
+    // Played elsewhere: the page's policy has no place for videos.
+    const player = await page.context().newPage();
+    const seen = await player.evaluate(async (text) => {
+      const video = document.createElement("video");
+      video.muted = true;
+      video.src = URL.createObjectURL(new Blob([Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))], { type: "video/webm" }));
+      const next = (/** @type {string} */ event) => new Promise((resolve, reject) => {
+        video.addEventListener(event, resolve, { once: true });
+        video.addEventListener("error", () => reject(new Error(video.error?.message)), { once: true });
+      });
+      await next("loadeddata");
+      const picture = () => {
+        const context = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext("2d");
+        context?.drawImage(video, 0, 0);
+        return context?.getImageData(0, 0, video.videoWidth, video.videoHeight).data ?? [];
+      };
+      const first = picture();
+      video.currentTime = 1e9;
+      await next("seeked");
+      const last = picture();
+      return { size: [video.videoWidth, video.videoHeight], seconds: video.currentTime, changed: [...last].filter((value, i) => Math.abs(value - (first[i] ?? 0)) > 40).length };
+    }, bytes);
+    assert.deepEqual(seen.size, size);
+    assert.ok(seen.changed > 1000, "the robot moves through the video");
+    t.diagnostic(`${seen.seconds.toFixed(1)} s, ${(bytes.length * 0.75 / 1e6).toFixed(1)} MB`);
+    // A second press ends it, without a file.
+    await page.getByRole("button", { name }).click();
+    await page.getByRole("button", { name }).getByText(/ of /).waitFor();
+    await page.getByRole("button", { name }).click();
+    await page.getByText("No video saved").waitFor();
+  }));

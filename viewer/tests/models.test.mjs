@@ -1,6 +1,6 @@
 /** Models that the page opens: files, zips, the catalogue; what is wrong with them is said with its place. */
 import assert from "node:assert/strict";
-import { mkdtemp, writeFile } from "node:fs/promises";
+import { mkdir, mkdtemp, writeFile } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
@@ -78,6 +78,49 @@ test("a URDF and its mesh are chosen together; of two models one is chosen; a dr
     }, urdf("x.stl").replace("crane", "third"));
     for (const type of ["dragover", "drop"]) await page.dispatchEvent("canvas", type, { dataTransfer: transfer });
     await untilModel(page, "third");
+  }));
+
+/**
+ * Drops a file or a folder of the disk on the view.
+ * @param {import("playwright-core").Page} page
+ * @param {string} path
+ */
+async function drop(page, path) {
+  const devtools = await page.context().newCDPSession(page);
+  for (const type of /** @type {const} */ (["dragEnter", "dragOver", "drop"])) {
+    await devtools.send("Input.dispatchDragEvent", { type, x: 400, y: 300, data: { items: [], files: [path], dragOperationsMask: 1 } });
+  }
+}
+
+test("a folder is dropped with a package in it: URDF, xacro, meshes, and what is hidden", () =>
+  visit(["panda"], async (page, server) => {
+    const root = join(folder, "workspace");
+    for (const [path, text] of /** @type {const} */ ([
+      ["crane/package.xml", "<package><name>crane</name></package>"], ["crane/urdf/crane.urdf", urdf("package://crane/meshes/a.stl")],
+      ["crane/urdf/crane.xacro", "<robot/>"], ["crane/meshes/a.stl", MESH], ["crane/readme.md", "left out"], ["crane/poses.csv", "lift\n0\n"],
+      ["crane/.git/b.urdf", urdf("b.stl")],
+      // Readers of folders give a hundred entries at a time.
+      ...Array.from({ length: 120 }, (_, i) => /** @type {const} */ ([`crane/textures/${i}.png`, ""])),
+    ])) {
+      await mkdir(join(root, path, ".."), { recursive: true });
+      await writeFile(join(root, path), text);
+    }
+    await drop(page, root);
+    await untilModel(page, "crane");
+    await page.waitForFunction(() => /** @type {any} */ (window).viewer.robot.links[1].shapes.children.length === 1);
+    const sent = await (await fetch(`${server.url}models/${new URL(page.url()).searchParams.get("model")}`)).text();
+    const { open, files } = JSON.parse(sent.split("\n")[0] ?? "");
+    assert.equal(open, "workspace/crane/urdf/crane.urdf");
+    assert.equal(files.length, 3 + 120);
+    // A folder without a model says so; a file of the disk opens as well.
+    const empty = join(folder, "empty");
+    await mkdir(empty);
+    for (let i = 0; i < 8; i += 1) await writeFile(join(empty, `${i}.md`), "");
+    await drop(page, empty);
+    await page.locator("dialog .problem").getByText(/empty\/\d\.md, .*, 3 more: no URDF/).waitFor();
+    await page.keyboard.press("Escape");
+    await drop(page, await file("single.urdf", urdf("a.stl").replace("crane", "single")));
+    await untilModel(page, "single");
   }));
 
 const MJCF = '<mujoco model="swing"><worldbody><body name="arm"><joint name="lift" type="hinge" axis="0 1 0"/><geom size="0.1"/></body></worldbody></mujoco>';

@@ -1,5 +1,6 @@
 /** Files of a model, chosen or dropped, alone or in a zip: what of them goes to the server, and which may be the model. */
 import { unzipSync, type Unzipped } from "three/addons/libs/fflate.module.js";
+import type { Given } from "../files";
 
 export type ModelFiles = {
   /** Paths of files that may be the model. */
@@ -15,6 +16,8 @@ const COMPANIONS = ["stl", "dae", "obj", "mtl", "png", "jpg", "jpeg", "gif", "bm
 /** All files together (bytes): the server takes no more. */
 const LARGEST = 256 << 20;
 const MOST = 2000;
+/** Of files in which there is no model. */
+const MOST_NAMED = 5;
 /** Where the root of an XML file is looked for (bytes). */
 const HEAD = 16_384;
 
@@ -29,27 +32,30 @@ export function isMotion(name: string): boolean {
 }
 
 /** Throws an error in words where the files cannot be a model. */
-export async function modelFiles(given: File[]): Promise<ModelFiles> {
+export async function modelFiles(given: Given[]): Promise<ModelFiles> {
   const files = new Map<string, Uint8Array>();
-  for (const file of given) {
-    if (file.size > LARGEST) throw new Error(`${file.name} is larger than ${LARGEST >> 20} MiB.`);
+  // A zip in a folder is none of its files.
+  const isZip = (path: string): boolean => extension(path) === "zip" && !path.includes("/");
+  for (const { path, file } of given.filter(({ path: one }) => isZip(one) || isKept(one))) {
+    if (file.size > LARGEST) throw new Error(`${path} is larger than ${LARGEST >> 20} MiB.`);
     const bytes = new Uint8Array(await file.arrayBuffer());
-    if (extension(file.name) === "zip") {
-      for (const [path, content] of Object.entries(unpacked(file.name, bytes))) files.set(path, content);
-    } else if (isKept(file.name)) {
-      files.set(file.name, bytes);
-    } else if (extension(file.name) === "xacro") {
-      throw new Error(`${file.name} is a program that writes a URDF: expand it first (xacro ${file.name} > robot.urdf).`);
-    }
+    if (isZip(path)) for (const [inside, content] of Object.entries(unpacked(path, bytes))) files.set(inside, content);
+    else files.set(path, bytes);
+    check(files);
   }
+  const candidates = [...files].filter(([path, bytes]) => isModel(path, bytes)).map(([path]) => path).sort();
+  if (candidates.length > 0) return { candidates, files };
+  const program = given.find(({ path }) => extension(path) === "xacro");
+  if (program) throw new Error(`${program.path} is a program that writes a URDF: expand it first (xacro ${program.path} > robot.urdf).`);
+  const named = given.slice(0, MOST_NAMED).map(({ path }) => path);
+  if (given.length > MOST_NAMED) named.push(`${given.length - MOST_NAMED} more`);
+  throw new Error(`${named.join(", ")}: no URDF, MJCF, SDF or mechanism file (.toml), and no motion or map (.csv, .json, .parquet).`);
+}
+
+function check(files: Map<string, Uint8Array>): void {
   let size = 0;
   for (const { length } of files.values()) size += length;
   if (files.size > MOST || size > LARGEST) throw new Error(`There are ${files.size} files of ${Math.ceil(size / (1 << 20))} MiB; ${MOST} of ${LARGEST >> 20} MiB are taken.`);
-  const candidates = [...files].filter(([path, bytes]) => isModel(path, bytes)).map(([path]) => path).sort();
-  if (candidates.length === 0) {
-    throw new Error(`${given.map(({ name }) => name).join(", ")}: no URDF, MJCF, SDF or mechanism file (.toml), and no motion or map (.csv, .json, .parquet).`);
-  }
-  return { candidates, files };
 }
 
 function isKept(path: string): boolean {

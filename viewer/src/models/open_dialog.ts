@@ -1,5 +1,6 @@
 /** The dialogue that opens files and switches models. */
 import { fill, h, type Child } from "../dom";
+import { chosen, type Given } from "../files";
 import type { Models, Refusal } from "../protocol";
 import { ACCEPTED, isMotion, modelFiles, request, type ModelFiles } from "./model_files";
 import { refusal } from "./refusal";
@@ -28,7 +29,7 @@ export class OpenDialog {
     "dialog", { class: "open", "aria-labelledby": "open-title" },
     h("form", { method: "dialog", class: "row" }, h("h2", { id: "open-title" }, "Open"), h("button", { class: "button small", "aria-label": "Close" }, "×")),
     h("div", { class: "row" }, h("button", { class: "button primary", type: "button", onclick: () => this.input.click() }, "Choose files"), this.input),
-    h("p", { class: "note" }, "A model: URDF, MJCF, SDF or a mechanism file (.toml), with its meshes in the same choice or all of it in a zip. A motion of the model that is shown, or a map of a sweep: CSV, JSON or Parquet. Files can be dropped on the page, too."),
+    h("p", { class: "note" }, "A model: URDF, MJCF, SDF or a mechanism file (.toml), with its meshes in the same choice or all of it in a zip. A motion of the model that is shown, or a map of a sweep: CSV, JSON or Parquet. Files, and folders with a model, can be dropped on the page, too."),
     this.problem, this.choice, this.models,
   );
 
@@ -36,7 +37,7 @@ export class OpenDialog {
   constructor(private readonly motion: (file: File) => void, private readonly beside: (id: string | null) => void) {
     document.body.append(this.element);
     this.input.addEventListener("change", () => {
-      void this.take([...(this.input.files ?? [])]);
+      void this.take(chosen(this.input.files ?? []));
       this.input.value = "";
     });
   }
@@ -54,17 +55,17 @@ export class OpenDialog {
   }
 
   /** Files that were chosen or dropped: motions are shown, others are a model. */
-  async take(given: File[]): Promise<void> {
-    const motions = given.filter(({ name }) => isMotion(name));
+  async take(given: Given[]): Promise<void> {
+    const motions = given.filter(({ path }) => isMotion(path));
     if (motions.length > 0 && motions.length === given.length) {
       this.element.close();
-      for (const file of motions) this.motion(file);
+      for (const { file } of motions) this.motion(file);
       return;
     }
     if (given.length === 0) return;
     this.clear();
     try {
-      const found = await modelFiles(given.filter(({ name }) => !isMotion(name)));
+      const found = await modelFiles(given.filter(({ path }) => !isMotion(path)));
       const [first] = found.candidates;
       if (first !== undefined && found.candidates.length === 1) await this.open(first, found.files);
       else this.choose(found);

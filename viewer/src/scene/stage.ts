@@ -204,10 +204,17 @@ export class Stage {
 
   /** The view as a PNG, on its background. */
   async png(): Promise<Blob> {
+    const { width, height } = this.renderer.domElement;
+    const canvas = Object.assign(document.createElement("canvas"), { width, height });
+    this.paintOn(canvas);
+    return new Promise((resolve, reject) => {
+      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be encoded"))), "image/png");
+    });
+  }
+
+  /** What is seen, as large as the canvas. */
+  paintOn(canvas: HTMLCanvasElement): void {
     this.draw();
-    const source = this.renderer.domElement;
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [source.width, source.height];
     const context = canvas.getContext("2d");
     if (!context) throw new Error("this browser does not support 2D canvases");
     const gradient = context.createLinearGradient(0, 0, 0, canvas.height);
@@ -215,10 +222,7 @@ export class Stage {
     gradient.addColorStop(1, colour("stage-bottom"));
     context.fillStyle = gradient;
     context.fillRect(0, 0, canvas.width, canvas.height);
-    context.drawImage(source, 0, 0);
-    return new Promise((resolve, reject) => {
-      canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture could not be encoded"))), "image/png");
-    });
+    context.drawImage(this.renderer.domElement, 0, 0, canvas.width, canvas.height);
   }
 
   private draw(): void {

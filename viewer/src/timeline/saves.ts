@@ -3,10 +3,15 @@ import { h, text } from "../dom";
 import { download } from "../download";
 import type { Look } from "../film/film";
 import { filmPage } from "../film/page";
+import { fixed } from "../format";
 import { icon } from "../icons";
 import { csvOf } from "./csv";
 import { frameTimes, MOST_FRAMES, zipped } from "./frames";
 import type { Recording } from "./recording";
+import { endingOf, filmed, videoType, type Paint } from "./video";
+
+/** What is seen of the robot: as a picture, painted elsewhere, and how large it is (pixels). */
+export type View = { picture: () => Promise<Blob>; paint: Paint; size: () => { width: number; height: number } };
 
 type Source = {
   recording: () => Recording | null;
@@ -14,17 +19,20 @@ type Source = {
   look: () => Look;
   /** Shows a time; false where another is wanted meanwhile. */
   show: (time: number) => Promise<boolean>;
-  picture: () => Promise<Blob>;
+  view: View;
   say: (words: string, bad?: boolean) => void;
 };
+
+/** What is made of many pictures: its name, also on its button. */
+type Maker = { name: string; words: HTMLElement };
 
 /** Frames of a second. */
 const RATE = { least: 1, most: 120, first: 30 };
 
 export class Saves {
   private readonly rate = h("input", { type: "number", class: "field", min: RATE.least, max: RATE.most, step: "any", value: RATE.first, "aria-label": "Frames per second", title: "Frames per second" });
-  private readonly words = h("span", {}, "frames");
-  private readonly frames = this.button("frames as a zip of numbered PNG", this.words, () => void this.saveFrames());
+  private readonly frames = maker("frames");
+  private readonly video = maker("video");
   /** Those of the group of buttons, and the rate after it. */
   readonly elements: HTMLElement[];
   readonly after: HTMLElement;
@@ -37,7 +45,16 @@ export class Saves {
       this.button("the plots as PNG", "PNG", () => this.save("png", () => source.plots(), "-plots")),
       this.button("HTML that plays the recording by itself", "HTML", () => this.save("html", (recording) => filmPage(recording, source.look()))),
     ];
-    this.after = h("span", { class: "group", role: "group", "aria-label": "Pictures" }, this.frames, h("label", { class: "note rate" }, this.rate, " per s"));
+    const type = videoType();
+    this.after = h(
+      "span", { class: "pictures", role: "group", "aria-label": "Pictures" },
+      h(
+        "span", { class: "group" },
+        this.button("frames as a zip of numbered PNG", this.frames.words, () => void this.saveFrames()),
+        type !== null && this.button(`a video (${endingOf(type).toUpperCase()})`, this.video.words, () => void this.saveVideo(type)),
+      ),
+      h("label", { class: "note rate" }, this.rate, " per s"),
+    );
   }
 
   private button(what: string, words: string | HTMLElement, action: () => void): HTMLButtonElement {
@@ -53,8 +70,26 @@ export class Saves {
     );
   }
 
-  /** A second press ends it. */
-  private async saveFrames(): Promise<void> {
+  private saveFrames(): Promise<void> {
+    return this.make(this.frames, async ({ scene: { name }, end }, rate, show) => {
+      const times = frameTimes(end, rate);
+      if (times.length > MOST_FRAMES) throw new Error(`${times.length} frames are more than ${MOST_FRAMES}: choose fewer per second`);
+      const zip = await zipped(name, times, async (time, i) => ((await show(time, `${i + 1} of ${times.length}`)) ? this.source.view.picture() : null));
+      return zip && { blob: zip, name: `${name}-frames.zip` };
+    });
+  }
+
+  private saveVideo(type: string): Promise<void> {
+    return this.make(this.video, async ({ scene: { name }, end }, rate, show) => {
+      const { paint, size } = this.source.view;
+      const { width, height } = size();
+      const video = await filmed(type, { end, rate, width, height }, (time) => show(time, `${fixed(time, 1)} of ${fixed(end, 1)} s`), paint);
+      return video && { blob: video, name: `${name}.${endingOf(type)}` };
+    });
+  }
+
+  /** Shows one time after the other; a second press ends it. */
+  private async make({ words, name }: Maker, work: (recording: Recording, rate: number, show: (time: number, words: string) => Promise<boolean>) => Promise<{ blob: Blob; name: string } | null>): Promise<void> {
     if (!this.stopped) {
       this.stopped = true;
       return;
@@ -66,26 +101,23 @@ export class Saves {
       this.source.say(`Frames per second are a number from ${RATE.least} to ${RATE.most}.`, true);
       return;
     }
-    const times = frameTimes(recording.end, rate);
-    if (times.length > MOST_FRAMES) {
-      this.source.say(`${times.length} frames are more than ${MOST_FRAMES}: choose fewer per second.`, true);
-      return;
-    }
     this.stopped = false;
-    const { name } = recording.scene;
     try {
-      const zip = await zipped(name, times, async (time, i) => {
-        text(this.words, `${i + 1} of ${times.length}`);
+      const made = await work(recording, rate, async (time, progress) => {
+        text(words, progress);
         // Whoever shows something else meanwhile ends it.
-        if (this.stopped || !(await this.source.show(time))) return null;
-        return this.source.picture();
+        return !this.stopped && this.source.show(time);
       });
-      if (zip) download(zip, `${name}-frames.zip`);
-      else this.source.say("The pictures were not saved: something else was shown meanwhile.");
+      if (made) download(made.blob, made.name);
+      else this.source.say(`No ${name} saved: it was ended, or something else was shown meanwhile.`);
     } catch (error) {
-      this.source.say(`The pictures could not be saved: ${error instanceof Error ? error.message : String(error)}.`, true);
+      this.source.say(`Saving the ${name} failed: ${error instanceof Error ? error.message : String(error)}.`, true);
     }
     this.stopped = true;
-    text(this.words, "frames");
+    text(words, name);
   }
+}
+
+function maker(name: string): Maker {
+  return { name, words: h("span", {}, name) };
 }

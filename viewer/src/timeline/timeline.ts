@@ -9,7 +9,7 @@ import { readMotion, type Motion, type Sample } from "./motion";
 import { Player } from "./player";
 import { Plots } from "./plots";
 import { MOST, Recording, type Past } from "./recording";
-import { Saves } from "./saves";
+import { Saves, type View } from "./saves";
 import { Trail } from "./trail";
 
 type Told = {
@@ -27,7 +27,7 @@ type Told = {
   size: () => number;
   /** From where one looks, and what is drawn beside the robot. */
   look: () => Look;
-  picture: () => Promise<Blob>;
+  view: View;
   /** What stands beside the robot is recorded with it, or no longer. */
   recordBeside: (recording: Recording | null) => void;
   /** What stands beside the robot is shown as it was, or as it is. */
@@ -65,8 +65,8 @@ export class Timeline {
 
   constructor(dock: HTMLElement, private readonly session: Session, private readonly tell: Told) {
     this.player = new Player(() => this.move(), () => this.dock.playing(this.player.playing));
-    const { say, look, picture } = tell;
-    const saves = new Saves({ recording: () => this.recording, plots: () => this.plots.picture(), look, picture, show: (time) => this.showAt(time), say });
+    const { say, look, view } = tell;
+    const saves = new Saves({ recording: () => this.recording, plots: () => this.plots.picture(), look, view, show: (time) => this.showAt(time), say });
     this.plots = new Plots((time) => {
       this.player.pause();
       this.player.seek(time);
