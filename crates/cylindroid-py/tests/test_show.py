@@ -353,6 +353,7 @@ def test_a_view_ends_with_its_program(end, code):
         if code < 0:
             program.terminate()
         assert program.wait(PATIENCE) == code, program.stderr.read()
+        assert ("<lambda> of a view is cut off" in program.stderr.read()) == ("readline" in end)
         # One that waits for something, such as its function or a page, waits for more than this.
         assert time.monotonic() - begin < 20
     address = urllib.parse.urlsplit(url)

@@ -24,6 +24,11 @@ _NOTEBOOKS = "http://localhost:* http://127.0.0.1:* https://localhost:* vscode-w
 #: Longest wait for functions that run when the program ends [s].
 _PATIENCE = 2.0
 
+_CUT_OFF = (
+    "cylindroid: {} of a view is cut off, without its `finally`: it ran for {:.0f} s after the end "
+    "of the program; let the program wait for it"
+)
+
 _NO_PAGE = (
     "this build of cylindroid has no page: run `cargo xtask viewer` in its source (it needs "
     "Node.js), then install it again"
@@ -145,6 +150,8 @@ def open_page(url: str, height: int) -> None:
 
 #: Each calls the functions of a view.
 _threads: list[threading.Thread] = []
+#: What they call now.
+_running: dict[threading.Thread, Any] = {}
 #: That started them: a process that is forked has none of them.
 _process = os.getpid()
 
@@ -160,12 +167,15 @@ def start_calls(calls: Any) -> None:
 
 
 def _call(calls: Any) -> None:
+    thread = threading.current_thread()
     for function, arguments in calls:
+        _running[thread] = function
         try:
             function(*arguments)
         except BaseException as error:  # the next calls are made none the less
             calls.failed(function, error)
-        del function, arguments
+        # A function may hold its view.
+        del function, arguments, _running[thread]
 
 
 @atexit.register
@@ -177,3 +187,7 @@ def _end() -> None:
     end = time.monotonic() + _PATIENCE
     for thread in _threads:
         thread.join(max(0.0, end - time.monotonic()))
+        function = _running.get(thread)
+        if function is not None and thread.is_alive():
+            name = getattr(function, "__qualname__", repr(function))
+            print(_CUT_OFF.format(name, _PATIENCE), file=sys.stderr)
