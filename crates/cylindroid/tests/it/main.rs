@@ -17,6 +17,7 @@ mod ik;
 mod ik_criteria;
 mod ik_goals;
 mod ik_half_spaces;
+mod ik_invariance;
 mod ik_misses;
 mod ik_wide_limits;
 mod inverse;
