@@ -36,12 +36,12 @@ const GENERAL: [Row; 7] = [
 
 /// Six hinges.
 const UR5E: [Row; 6] = [
-    [0.0, 0.0, 0.1625, -6.2831, 6.2831],
-    [RIGHT, 0.0, 0.0, -6.2831, 6.2831],
-    [0.0, -0.425, 0.0, -3.1415, 3.1415],
-    [0.0, -0.3922, 0.1333, -6.2831, 6.2831],
-    [RIGHT, 0.0, 0.0997, -6.2831, 6.2831],
-    [-RIGHT, 0.0, 0.0996, -6.2831, 6.2831],
+    [0.0, 0.0, 0.1625, -6.2, 6.2],
+    [RIGHT, 0.0, 0.0, -6.2, 6.2],
+    [0.0, -0.425, 0.0, -3.0, 3.0],
+    [0.0, -0.3922, 0.1333, -6.2, 6.2],
+    [RIGHT, 0.0, 0.0997, -6.2, 6.2],
+    [-RIGHT, 0.0, 0.0996, -6.2, 6.2],
 ];
 
 /// The arm at a place of the world, `size` new units of length in a metre.
@@ -51,7 +51,7 @@ fn arm(rows: &[Row], world: Pose, size: f64) -> Mechanism {
     for (i, [twist, length, offset, lower, upper]) in rows.iter().copied().enumerate() {
         let link = format!("link{i}");
         builder.link(Link::named(&link));
-        let mut joint = JointSpec::new(format!("joint{i}"), JointKind::Revolute, &parent, &link);
+        let mut joint = JointSpec::new(&format!("joint{i}"), JointKind::Revolute, &parent, &link);
         let bent = Pose {
             rotation: Rotation::exp(Vec3::X * twist),
             translation: Vec3::X * (length * size),
