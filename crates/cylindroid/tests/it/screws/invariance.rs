@@ -135,3 +135,25 @@ fn within_the_span_all_agree() {
         }
     }
 }
+
+/// Six independent axes span all of space, from wherever they are seen.
+#[test]
+fn order_six_from_far_away() {
+    let mut random = Random(2031);
+    for name in ["panda", "ur5e"] {
+        let robot = catalogue::load(name).unwrap();
+        let options = ScrewOptions::with_length(robot.reach());
+        for round in 0..40 {
+            let state = robot.state(&random.q(&robot)).unwrap();
+            let base = state.jacobian(robot.tool(), ReferenceFrame::World).unwrap();
+            let here = ScrewSystem::of_columns(&base, &options).unwrap();
+            let away = random.vec3(1.0) * [3.0, 9.0, 11.0, 1e3, 1e6][round % 5];
+            let away = Pose { rotation: random.rotation(), translation: away };
+            let there = &adjoint_matrix(away) * &base;
+            let there = ScrewSystem::of_columns(&there, &options).unwrap();
+            assert_eq!(here.order(), 6, "{name} {round}");
+            assert_eq!(there.order(), 6, "{name} {round}: {away:?}");
+            assert_eq!(here.class(), there.class());
+        }
+    }
+}
