@@ -5,6 +5,9 @@ import type { Stage } from "./scene/stage";
 import type { Session } from "./session";
 import { parse, snapshot, type Snapshot } from "./share";
 
+/** Within this after a restart the pages of a session come back (ms). */
+const RETURNING = 30_000;
+
 export class Restore {
   private wanted: Snapshot | null = null;
   /** The session that was lost; `begun` is null for a page alone. */
@@ -14,6 +17,7 @@ export class Restore {
   private fresh = true;
   /** This page drove a session that begins anew under another page, and drives again once that one does not. */
   private drivesAgain = false;
+  private drivesUntil = 0;
   /** Who drove when the connection was lost; this page before. */
   drove: Driver = "you";
 
@@ -74,6 +78,7 @@ export class Restore {
       this.say("The connection is restored, with the previous configuration.");
     }
     this.drivesAgain = about !== null && !about.program && this.drove === "you" && last !== null && about.begun !== last.begun;
+    this.drivesUntil = performance.now() + RETURNING;
     this.last = null;
     session.send({ type: "overlays", names: this.overlays.names() });
     // The robot is the program's, what stands beside it is of its pages.
@@ -88,6 +93,8 @@ export class Restore {
   /** A page that came before this one brings the session back and lets go of it. */
   private driveAgain({ driver }: About): void {
     if (!this.drivesAgain || driver === "another") return;
+    // Long after the restart who let go of it has nothing to do with it.
+    if (performance.now() > this.drivesUntil) return;
     this.drivesAgain = false;
     if (driver === "nobody") this.session.send({ type: "drive", on: true });
   }

@@ -109,7 +109,7 @@ export class Saves {
         return !this.stopped && this.source.show(time);
       });
       if (made) download(made.blob, made.name);
-      else this.source.say(`No ${name} saved: it was ended, or something else was shown meanwhile.`);
+      else this.source.say(`No ${name} saved: saving was ended, or something else was shown meanwhile.`);
     } catch (error) {
       this.source.say(`Saving the ${name} failed: ${error instanceof Error ? error.message : String(error)}.`, true);
     }

@@ -32,9 +32,10 @@ export async function filmed(type: string, { end, rate, width, height }: Film, s
   const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS * width * height });
   const parts: Blob[] = [];
   recorder.ondataavailable = ({ data }) => parts.push(data);
-  const over = new Promise<void>((resolve, reject) => {
+  let failed = false;
+  const over = new Promise<void>((resolve) => {
     recorder.onstop = () => resolve();
-    recorder.onerror = () => reject(new Error("the browser could not encode the video"));
+    recorder.onerror = () => (failed = true);
   });
   recorder.start();
   let isWhole = false;
@@ -42,7 +43,7 @@ export async function filmed(type: string, { end, rate, width, height }: Film, s
     const begin = performance.now();
     for (let i = 0; !isWhole; i += 1) {
       const time = Math.min((performance.now() - begin) / 1000, end);
-      if (!(await show(time))) break;
+      if (failed || !(await show(time))) break;
       paint(canvas);
       track?.requestFrame();
       isWhole = time === end;
@@ -51,9 +52,11 @@ export async function filmed(type: string, { end, rate, width, height }: Film, s
       await new Promise((resolve) => setTimeout(resolve, Math.max(next - performance.now(), 0)));
     }
   } finally {
-    recorder.stop();
+    // An error stops it.
+    if (recorder.state !== "inactive") recorder.stop();
     track?.stop();
   }
   await over;
+  if (failed) throw new Error("the browser could not encode the video");
   return isWhole ? new Blob(parts, { type }) : null;
 }

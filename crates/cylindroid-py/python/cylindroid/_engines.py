@@ -183,7 +183,7 @@ class _Executor:
             raise refused(
                 "engine",
                 f"{error}; what goes to another process is pickled: columns need functions of a "
-                "module"
+                "module, and the shapes of collision= stay in one process"
             ) from error
 
 
@@ -299,9 +299,12 @@ def _finished(
                     known = listed[part] if listed else None
                     pending[workers.submit(part, known)] = part
             else:
-                for future in [future for future, part in pending.items() if part > failed[0]]:
+                for future, part in [own for own in pending.items() if own[1] > failed[0]]:
                     del pending[future]
-                    workers.cancel(future)
+                    if future.done() and future.exception() is None:
+                        yield part, workers.result(future)
+                    else:
+                        workers.cancel(future)
             if not pending:
                 if failed is not None:
                     workers.result(failed[1])

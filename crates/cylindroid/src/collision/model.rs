@@ -301,17 +301,31 @@ impl CollisionModel {
         self.scene.place(state);
         let mut smallest = f64::INFINITY;
         for pair in 0..self.scene.pairs.len() {
-            if (self.scene.pairs[pair].b >= self.links) != to_obstacles
-                || self.scene.gap_between_bounds(pair) > smallest
-            {
+            if (self.scene.pairs[pair].b >= self.links) != to_obstacles {
+                continue;
+            }
+            let gap = self.scene.gap_between_bounds(pair);
+            if gap > smallest && gap.is_finite() {
                 continue;
             }
             match self.scene.evaluate(pair) {
+                Some(near) if near.distance.is_nan() => return f64::NAN,
                 Some(near) => smallest = smallest.min(near.distance),
                 None => return f64::NAN,
             }
         }
         smallest
+    }
+
+    /// The shapes of the links of another design of its mechanism, of which the same pairs are watched.
+    #[cfg(feature = "sweep")]
+    pub(crate) fn of_design(&self, design: &Mechanism) -> Result<Self> {
+        let options = CollisionOptions { samples: 0, ..CollisionOptions::default() };
+        let mut own = Self::new(design, &options)?;
+        if own.scene.bodies.len() == self.scene.bodies.len() {
+            own.scene.pairs.clone_from(&self.scene.pairs);
+        }
+        Ok(own)
     }
 
     /// A bound of the way of a body for small changes of the coordinates (m).

@@ -184,7 +184,7 @@ pub(super) fn spanned(twists: &[Twist], options: &ScrewOptions) -> (Span, Scale,
 /// previous one and in which the angular parts are orthogonal: unique as long as the choice
 /// matters.
 fn center_of(twists: &[Twist], start: Scale, turning: f64) -> Scale {
-    // All of space is the same at every point: the origin, unless the axes are far from it.
+    // All of space is the same at every point, so that the origin will do unless the axes are far from it.
     if twists.len() == 6 && start.center.norm() < FAR_ORIGIN * start.length {
         return Scale { center: Vec3::ZERO, ..start };
     }

@@ -17,10 +17,12 @@ use super::axis::{Axis, points};
 use super::capability;
 use super::evaluate::Evaluator;
 use super::options::SweepOptions;
+use super::quantity::Quantity;
 use super::sobol::Sobol;
 use super::source::Configurations;
 use super::table::{Column, Values};
 use crate::closure::ParametricModel;
+use crate::collision::{CollisionModel, CollisionOptions};
 use crate::error::{Error, Result};
 use crate::model::Mechanism;
 use crate::tolerance::MAX_MAGNITUDE;
@@ -202,6 +204,9 @@ pub(super) struct Designs {
     pub(super) each: u64,
     /// Columns of one design.
     pub(super) own_columns: Vec<Column>,
+    /// Of the nominal design: those of its pairs are watched in all designs that do not always touch,
+    /// whether they come near in one of them or not.
+    collision: Option<CollisionModel>,
 }
 
 impl Designs {
@@ -213,7 +218,12 @@ impl Designs {
         each: u64,
     ) -> Result<Self> {
         let count = space.checked_count(model)?;
-        Ok(Self { model: model.clone(), space, count, options, each, own_columns: columns })
+        let all = CollisionOptions { never_margin: f64::MAX, ..CollisionOptions::default() };
+        let collision = options.quantities.contains(&Quantity::SelfDistance);
+        let collision =
+            collision.then(|| CollisionModel::new(model.nominal(), &all)).transpose()?;
+        let model = model.clone();
+        Ok(Self { model, space, count, options, each, own_columns: columns, collision })
     }
 
     /// All columns: the design and its parameters before those of the configurations.
@@ -252,6 +262,10 @@ impl Designs {
                 frame => own.frame(&nominal.frame_of(frame).name)?,
             };
         }
+        options.collision = match &self.collision {
+            Some(nominal) => Some(nominal.of_design(&own)?),
+            None => None,
+        };
         let configurations = Configurations::new(&own, &options.source, options.place(&own)?.0)?;
         Ok((configurations, Evaluator::new(&own, &options)?))
     }

@@ -122,7 +122,7 @@ impl Sweep {
     /// # Errors
     /// Those of [`Sweep::new`] for the nominal design; unknown or repeated parameters, ranges beyond
     /// those of the file, a parameter with the name of a coordinate, own columns, given
-    /// collision shapes.
+    /// collision shapes, distances to obstacles.
     pub fn of_designs(
         model: &ParametricModel,
         space: DesignSpace,
@@ -136,12 +136,19 @@ impl Sweep {
                     .to_owned(),
             });
         }
+        if options.quantities.contains(&Quantity::ObstacleDistance) {
+            return Err(Error::InvalidOption {
+                option: "quantities",
+                value: Quantity::ObstacleDistance.name().to_owned(),
+                reason: "designs have no obstacles; sweep one design at a time".to_owned(),
+            });
+        }
         if options.collision.is_some() {
             return Err(Error::InvalidOption {
                 option: "collision",
                 value: model.nominal().name().to_owned(),
                 reason: "these shapes are those of one design; each has those of its own links \
-                         without this option, and no obstacles"
+                         without this option"
                     .to_owned(),
             });
         }

@@ -76,7 +76,7 @@ fn distances_are_indices() {
         [[collision]]\nlink = 'two'\nshape = 'sphere'\nradius = 0.05\nxyz = ['length', 0, 0]\n\
         [[collision]]\nlink = 'ground'\nshape = 'half_space'\nxyz = [0, 0, -0.5]\n";
     let model = ParametricModel::of_text(text, Path::new("arm.toml"), &[]).unwrap();
-    let ranges = vec![ParameterRange { name: "length".to_owned(), from: 0.3, to: 0.9 }];
+    let ranges = vec![ParameterRange { name: "length".to_owned(), from: 0.1, to: 0.9 }];
     let options = SweepOptions {
         source: Source::Configurations(vec![0.5, 0.0]),
         quantities: vec![Quantity::SelfDistance],

@@ -164,10 +164,21 @@ fn collision(
     if !args.obstacle.is_empty() && !wants(Quantity::ObstacleDistance) {
         anyhow::bail!("--obstacle is seen by obstacle_distance alone; name it in --quantities");
     }
-    let own = match (wants(Quantity::SelfDistance), wants(Quantity::ObstacleDistance)) {
-        (false, false) => false,
-        _ => !of_designs || given || !args.obstacle.is_empty(),
-    };
+    let own = wants(Quantity::SelfDistance) || wants(Quantity::ObstacleDistance);
+    if args.meshes.is_some() && !own {
+        anyhow::bail!(
+            "--meshes is seen by self_distance and obstacle_distance alone; name one in --quantities"
+        );
+    }
+    if of_designs && own {
+        if given || !args.obstacle.is_empty() {
+            anyhow::bail!(
+                "each design has the shapes of its own links: sweep it alone to give it --meshes, \
+                 --srdf or --obstacle"
+            );
+        }
+        return Ok(None);
+    }
     let model = || collision_model(robot, &args.collision(), args.model.srdf.as_deref());
     Ok(own.then(model).transpose()?)
 }

@@ -343,7 +343,7 @@ mod tests {
                 assert!(after < 1e-3 * before + 1e-13, "{name}: {before:e} to {after:e}");
             }
         }
-        assert_eq!(solved, 8 * 20);
+        assert_eq!(solved, 9 * 20);
     }
 
     /// Two parallelograms in series, each turned by its own joint, an arm between them and one of a

@@ -296,7 +296,9 @@ fn quantity_of(nominal: &Mechanism, of_poses: bool, index: &str) -> Result<Optio
     if of_poses && index == REACHED {
         return Ok(None);
     }
-    let possible = Quantity::ALL.into_iter().filter(|q| !nominal.is_closed() || q.has_loops());
+    let possible = Quantity::ALL
+        .into_iter()
+        .filter(|q| *q != Quantity::ObstacleDistance && (!nominal.is_closed() || q.has_loops()));
     // More singular values than there are have no column in the end.
     let columns = |q: Quantity| q.columns(nominal, 6);
     let mut names: Vec<String> = Vec::new();

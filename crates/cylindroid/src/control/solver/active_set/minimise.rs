@@ -5,6 +5,8 @@
 //!          multipliers up to that are zero, since nearly dependent rows share large ones of rounding.
 //!          The part of the left side on the free motions is such an error too: rounding, and what is
 //!          left along weak directions, which take no part in steps; no row is needed for it
+//! Valid    where the working rows leave free motions: at a corner nothing is left on them, and a row that
+//!          a weak direction needs is held. A level that ends after the most rounds keeps more rows
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel,
 //!          src/control/solver/hierarchy/tests.rs::findings_stay_mended
