@@ -460,7 +460,7 @@ mod tests {
         for _ in 0..300 {
             let mailbox = Arc::new(Mailbox::default());
             let reads = Arc::clone(&mailbox);
-            // Few millions of looks take seconds.
+            // A limit, so that a message that is missing ends the test.
             let looks = move || repeat_with(move || reads.first()).take(10_000_000);
             let all = move || looks().flatten().take(3).collect::<Vec<_>>();
             let reader = std::thread::spawn(all);

@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::{json, numbers, refused, text};
 
-const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
+pub(crate) const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
 
 #[test]
 fn obstacles_and_gradients() {

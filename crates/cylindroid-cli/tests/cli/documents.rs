@@ -8,11 +8,11 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::closed::robots;
+use crate::distance::CELL;
 use crate::text;
 
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const GRASP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/grasp.toml");
-const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
 const GOALS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/goals.toml");
 const DESIGNS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/designs.toml");
 const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+use crate::distance::CELL;
 use crate::{json, refused, text};
 
 /// A column of statistics.
@@ -318,4 +319,22 @@ fn designs_by_grid_and_samples() {
     assert!(refused(&["--vary", "crank=0.4", "--designs", "3"]).contains("name=smallest:largest"));
     let both = ["--over", "rod=0.4:1:3", "--vary", "crank=0.4:1", "--designs", "3"];
     assert!(refused(&both).contains("designs are a grid or samples"));
+}
+
+/// Distances to obstacles, as of `distance`, and options that nothing sees.
+#[test]
+fn distances_to_obstacles() {
+    let near_home = ["sweep", CELL, "--over", "panda_joint7=0.78:0.79:2", "--quantities"];
+    let least = |obstacle: &str| {
+        let own = [&near_home[..], &["obstacle_distance", "--obstacle", obstacle]].concat();
+        column(&json(&own, 0), "obstacle_distance")["smallest"].as_f64().unwrap()
+    };
+    assert!(least("ball=sphere:0.1@0.3,0,0.55") < 0.0);
+    let (far, farther) = (least("ball=sphere:0.1@0,0,50"), least("ball=sphere:0.1@0,0,51"));
+    assert!(far > 48.0 && (farther - far - 1.0).abs() < 1e-3, "{far} {farther}");
+    let with = |extra: &[&str]| refused(&[&near_home[..], extra].concat());
+    let ball = ["pose", "--obstacle", "ball=sphere:0.1@0,0,5"];
+    assert!(with(&ball).contains("obstacle_distance alone"));
+    assert!(with(&["pose", "--meshes", "convex_hull"]).contains("self_distance"));
+    assert!(with(&["obstacle_distance"]).contains("no obstacle"));
 }

@@ -4,9 +4,9 @@ use std::fs;
 
 use serde_json::{Value, json as object};
 
+use crate::distance::CELL;
 use crate::{json, numbers, refused, text};
 
-const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
 const TASKS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tasks.toml");
 
 fn position(model: &str, q: &Value, frame: &str) -> Vec<f64> {

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{Client, Server, configuration};
+use crate::distance::CELL;
 use crate::numbers;
 
 fn report(client: &mut Client, name: &str) -> Value {
@@ -192,7 +193,6 @@ fn messages_have_the_keys_of_their_page() {
         let missing: Vec<_> = found.iter().filter(|key| !named(key)).collect();
         assert!(missing.is_empty(), "{missing:?} of {}", message["type"]);
     };
-    const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
     for arguments in
         [&["youbot", "--frame", "arm_link_2"][..], &["two-arm"], &["five-bar"], &[CELL]]
     {

@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::{Client, Server};
+use crate::distance::CELL;
 use crate::numbers;
 
-const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cell.toml");
 const BALL: &str = "ball=sphere:0.08@0.4,0.25,0.3";
 
 fn ball(name: &str, position: [f64; 3], radius: f64) -> Value {

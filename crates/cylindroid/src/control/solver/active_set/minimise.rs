@@ -9,7 +9,8 @@
 //!          a weak direction needs is held. A level that ends after the most rounds keeps more rows
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel,
-//!          src/control/solver/hierarchy/tests.rs::findings_stay_mended
+//!          src/control/solver/hierarchy/tests.rs::findings_stay_mended,
+//!          src/control/solver/hierarchy/tests.rs::weak_directions_hold_no_bounds
 
 use super::{ActiveSet, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, solve_triangle};
 use crate::linalg::{dot, norm};

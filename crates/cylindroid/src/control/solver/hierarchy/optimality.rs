@@ -6,12 +6,11 @@
 //! Valid    steps of at most `FAR` in each unknown; rows that bind to less than 1e-12 count as kept;
 //!          points far away, where rows without bounds nearly depend on others, to their rounding;
 //!          bounds of rows to `ROUNDING` of the point; levels keep their rows but for `DEPENDENT` of the
-//!          motion, and leave what singular values below `Precision::STRAIGHT` could gain; after levels whose ranks, with the
-//!          bounds that bind, are not clear (`UNCLEAR`) points are feasible and keep the levels, but
-//!          need not be the best: which bounds the level needs is decided by its gradients, which are
-//!          the squares of its singular values, and by steps as long as their reciprocals. Which
-//!          bounds are needed the solver says: a row that it holds wrongly, and that makes ranks unclear,
-//!          would not be seen, so that such problems are counted and are few
+//!          motion, and leave what singular values below `Precision::STRAIGHT` could gain; after
+//!          levels whose ranks, with the bounds that bind, are not clear (`UNCLEAR`) points are feasible
+//!          and keep the levels, but need not be the best: gradients, the squares of singular values,
+//!          decide which bounds a level needs. The solver says which bounds it holds: one that it
+//!          holds wrongly, and that makes ranks unclear, is not seen. Such problems are counted and few
 //! Why so   a referee in a fuzzer must be fast and must not share decisions of ranks with the solver:
 //!          only directions that the kept rows lose to rounding are tried
 //! Source   Jaggi 2013, eq. 2
