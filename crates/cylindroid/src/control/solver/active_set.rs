@@ -55,6 +55,10 @@ const PULL: f64 = 1e-9;
 /// them [-].
 pub(in crate::control) const FEASIBLE: f64 = 1e-11;
 
+/// Rows that depend on working ones may end beyond their bounds by this, relative to one plus the
+/// bound: more than what a start may leave, so that they stop no level at once.
+const BEYOND: f64 = 10.0 * FEASIBLE;
+
 /// Which decisions of a level count as zero, relative to its size.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::control) struct Precision {

@@ -185,6 +185,8 @@ impl ActiveSet {
     }
 }
 
+#[cfg(test)]
+mod findings;
 #[cfg(any(test, fuzzing))]
 pub(in crate::control) mod optimality;
 #[cfg(any(test, fuzzing))]

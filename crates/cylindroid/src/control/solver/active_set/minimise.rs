@@ -6,13 +6,17 @@
 //!          The part of the left side on the free motions is such an error too: rounding, and what is
 //!          left along weak directions, which take no part in steps; no row is needed for it
 //! Valid    where the working rows leave free motions: at a corner nothing is left on them, and a row that
-//!          a weak direction needs is held. A level that ends after the most rounds keeps more rows
+//!          a weak direction needs is held. A level that ends after the most rounds keeps more rows. Rows
+//!          that depend on the working ones but for `DEPENDENT` stop long motions short of the optimum
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel,
-//!          src/control/solver/hierarchy/tests.rs::findings_stay_mended,
-//!          src/control/solver/hierarchy/tests.rs::weak_directions_hold_no_bounds
+//!          src/control/solver/hierarchy/findings.rs::findings_stay_mended,
+//!          src/control/solver/hierarchy/findings.rs::weak_directions_hold_no_bounds,
+//!          src/control/solver/hierarchy/findings.rs::dependent_rows_keep_their_bounds
 
-use super::{ActiveSet, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, solve_triangle};
+use super::{
+    ActiveSet, BEYOND, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, solve_triangle,
+};
 use crate::linalg::{dot, norm};
 
 impl ActiveSet {
@@ -32,7 +36,8 @@ impl ActiveSet {
                 self.rounds += 1;
             }
             self.load_direction(&mut objective, precision, &mut projected);
-            let blocked = self.advance();
+            // Nothing goes on beside a row that cannot be added.
+            let blocked = self.advance().filter(|(_, row, _)| self.uses[*row] == Use::Free);
             let Some((share, row, sign)) = blocked else {
                 let least = self.load_gradient(&mut objective, precision);
                 // At rounds without progress the first row is as good as the most promising one.
@@ -111,12 +116,14 @@ impl ActiveSet {
     }
 
     /// Moves along the direction to its end or to the first row in the way: the share of the
-    /// motion, that row and the sign of its bound.
+    /// motion, that row and the sign of its bound. Rows that depend on the working ones up to
+    /// `DEPENDENT` still move with long motions: they are in the way once beyond their bounds.
     pub(super) fn advance(&mut self) -> Option<(f64, usize, f64)> {
         let size = norm(&self.direction);
         let mut first: Option<(f64, usize, f64)> = None;
         for i in 0..self.inequalities.len() {
-            if self.uses[i] != Use::Free {
+            let is_free = self.uses[i] == Use::Free;
+            if !is_free && self.uses[i] != Use::Dependent {
                 continue;
             }
             let rate = self.inequalities.value(i, &self.direction);
@@ -128,7 +135,8 @@ impl ActiveSet {
             if bound.is_infinite() {
                 continue;
             }
-            let room = (bound - self.inequalities.value(i, &self.y)) / rate;
+            let slack = if is_free { 0.0 } else { sign * BEYOND * (1.0 + bound.abs()) };
+            let room = (bound + slack - self.inequalities.value(i, &self.y)) / rate;
             if room < first.map_or(1.0, |f| f.0) {
                 first = Some((room.max(0.0), i, sign));
             }
@@ -137,6 +145,7 @@ impl ActiveSet {
         self.y.iter_mut().zip(&self.direction).for_each(|(y, d)| *y += share * d);
         if let Some((_, row, sign)) = first
             && row < self.inequalities.boxed()
+            && self.uses[row] == Use::Free
         {
             self.y[row] = self.inequalities.bound(row, sign);
         }

@@ -3,18 +3,17 @@
 //! Formula  f(y) - f* <= max -f'(y) d over the steps d within the bounds that leave the levels before
 //!          as they are (the gap of Frank & Wolfe): a linear program, solved by another method than
 //!          the active set
-//! Valid    steps of at most `FAR` in each unknown; rows that bind to less than 1e-12 count as kept;
-//!          points far away, where rows without bounds nearly depend on others, to their rounding;
-//!          bounds of rows to `ROUNDING` of the point; levels keep their rows but for `DEPENDENT` of the
-//!          motion, and leave what singular values below `Precision::STRAIGHT` could gain; after
-//!          levels whose ranks, with the bounds that bind, are not clear (`UNCLEAR`) points are feasible
-//!          and keep the levels, but need not be the best: gradients, the squares of singular values,
-//!          decide which bounds a level needs. The solver says which bounds it holds: one that it
-//!          holds wrongly, and that makes ranks unclear, is not seen. Such problems are counted and few
+//! Valid    steps of at most `FAR` in each unknown; rows that bind to less than 1e-12 count as kept; bounds
+//!          of rows to `ROUNDING` of the farthest point so far; levels keep their rows but for
+//!          `DEPENDENT` of the motion, and leave what singular values below `Precision::STRAIGHT` could
+//!          gain. Bounds that higher levels hold count as kept: that each is needed is checked apart, by
+//!          what its level would gain without it
 //! Why so   a referee in a fuzzer must be fast and must not share decisions of ranks with the solver:
-//!          only directions that the kept rows lose to rounding are tried
+//!          only directions that the kept rows lose to rounding are tried. A level that leaves a weak
+//!          direction is the optimum of rows that differ a little: there the bounds that it holds are no
+//!          consequence of its rows
 //! Source   Jaggi 2013, eq. 2
-//! Checked  src/control/solver/hierarchy/tests.rs::findings_stay_mended
+//! Checked  src/control/solver/hierarchy/findings.rs::findings_stay_mended
 
 use super::super::active_set::{ActiveSet, DEPENDENT, FEASIBLE, Level, Precision, Whole};
 use super::ScaledLevel;
@@ -33,11 +32,17 @@ const GAP: f64 = 1e-6;
 /// Rounding of a row times the point, relative to its terms.
 const ROUNDING: f64 = 1e-12;
 
-/// The rank of levels is unclear where a singular value lies between these shares of the largest: it is
-/// more than rounding, its square, by which gradients change, is not.
-const UNCLEAR: [f64; 2] = [1e-13, 1e-5];
+/// Singular values that are lost to rounding.
+const LOST: f64 = 1e-14;
+
+/// Multipliers below this share of the gradient that weak directions leave are not needed.
+const WEAK: f64 = 0.1;
+
+/// A bound that is held without need may be left by this share of the steps.
+const AWAY: f64 = 1e-2;
 
 /// A row of a level that was solved: its value there must stay.
+#[derive(Debug, Clone)]
 struct Kept {
     row: Vec<f64>,
     value: f64,
@@ -52,27 +57,27 @@ pub(crate) fn check(bytes: &[u8]) {
     check_changed(bytes, |_| {});
 }
 
-/// The same for the problem after a change; true if the optima of all levels were looked at.
-pub(super) fn check_changed(bytes: &[u8], change: impl Fn(&mut Problem)) -> bool {
+/// The same for the problem after a change.
+pub(super) fn check_changed(bytes: &[u8], change: impl Fn(&mut Problem)) {
     let mut random = Random::of_bytes(bytes);
     let scaled = random.below(3) == 0;
     let mut problem = Problem::random(&mut random);
     change(&mut problem);
     if scaled {
         check_scaled(&mut problem, &mut random);
-        return true;
+    } else {
+        check_levels(&problem, &mut random);
     }
-    check_levels(&problem, &mut random)
 }
 
-fn check_levels(problem: &Problem, random: &mut Random<'_>) -> bool {
+fn check_levels(problem: &Problem, random: &mut Random<'_>) {
     let mut set = problem.active_set();
     let guess: Vec<f64> = (0..problem.n).map(|_| 3.0 * random.signed()).collect();
     assert!(set.start(&guess), "no feasible point found");
-    check_kept(problem, &[], &set);
-    check_nearest(problem, &[], &set, &guess, "start");
-    let mut kept: Vec<Kept> = Vec::new();
-    let mut is_clear = true;
+    let mut farthest = norm(set.point());
+    check_kept(problem, &[], &set, farthest);
+    check_nearest(&Steps::beside(problem, &[], &[], &set), &guess, "start");
+    let (mut kept, mut held): (Vec<Kept>, Vec<usize>) = (Vec::new(), Vec::new());
     for (a, b) in &problem.levels {
         let mut level = Level::new(a.rows(), problem.n);
         level.rows = a.clone();
@@ -82,54 +87,57 @@ fn check_levels(problem: &Problem, random: &mut Random<'_>) -> bool {
         if !freely || set.solve_freely(&mut level, 1e-3) != Whole::Performed {
             set.solve(&mut level, Precision::STRAIGHT);
         }
-        check_kept(problem, &kept, &set);
+        farthest = farthest.max(norm(set.point()));
+        check_kept(problem, &kept, &set, farthest);
         let left = level.left(set.point()).to_vec();
         let along: Vec<f64> = a.transpose().mul_vec(&left);
-        // Gradients of points far away are as large as their rounding.
+        // Gradients of points far away are as large as their rounding, multipliers larger.
         let rows = a.frobenius_norm();
-        let left_by_rounding = ROUNDING * rows * norm(set.point());
+        let steps = Steps::beside(problem, &kept, &held, &set);
+        let left_by_rounding = ROUNDING * rows * norm(set.point()) * steps.amplification();
         // Singular values that take no part.
         let left_by_rank = Precision::STRAIGHT.rank * norm(&left);
         let far = FAR * (problem.n as f64).sqrt();
         let slack = slack(norm(&level.target)) + far * rows * (left_by_rounding + left_by_rank);
-        if is_clear {
-            check_gain(problem, &kept, &set, &along, slack, "level");
-        }
-        kept.extend(a.mul_vec(set.point()).into_iter().enumerate().map(|(i, value)| Kept {
+        check_gain(&steps, &along, slack, "level");
+        let now: Vec<usize> = (0..problem.rows.len()).filter(|i| set.holds(*i)).collect();
+        let of_level = a.mul_vec(set.point()).into_iter().enumerate().map(|(i, value)| Kept {
             row: (0..problem.n).map(|j| a[(i, j)]).collect(),
             value,
             scale: rows,
             at: set.point().to_vec(),
-        }));
-        is_clear &= has_clear_rank(problem, &kept, &set);
+        });
+        let after: Vec<Kept> = kept.iter().cloned().chain(of_level).collect();
+        let steps_after = Steps::beside(problem, &after, &held, &set);
+        for row in now.iter().copied().filter(|row| !held.contains(row)) {
+            check_needed(row, &steps, &along, &steps_after);
+        }
+        (kept, held) = (after, now);
     }
     let goal: Vec<f64> = (0..problem.n).map(|_| random.signed()).collect();
     set.approach(&goal, Precision::STRAIGHT);
-    check_kept(problem, &kept, &set);
-    if is_clear {
-        check_nearest(problem, &kept, &set, &goal, "approach");
-    }
-    is_clear
+    check_kept(problem, &kept, &set, farthest.max(norm(set.point())));
+    check_nearest(&Steps::beside(problem, &kept, &held, &set), &goal, "approach");
 }
 
-/// False if a singular value of the kept rows, alone, with the bounds that are held or with those that
-/// bind, is neither zero nor clearly more.
-fn has_clear_rank(problem: &Problem, kept: &[Kept], set: &ActiveSet) -> bool {
-    let bounds = problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper));
-    let binds = |row: &[f64], lower: f64, upper: f64| {
-        let (now, size) = product(row, set.point());
-        (now - lower).min(upper - now) <= 10.0 * FEASIBLE * (1.0 + size)
-    };
-    let binding = bounds.enumerate().filter(|(_, (row, (l, u)))| binds(row, **l, **u));
-    let (held, others): (Vec<_>, Vec<_>) = binding.partition(|(i, _)| set.holds(*i));
-    let bounds = held.iter().chain(&others).map(|(_, (row, _))| *row);
-    let rows: Vec<&Vec<f64>> = kept.iter().map(|kept| &kept.row).chain(bounds).collect();
-    [kept.len(), kept.len() + held.len(), rows.len()].into_iter().all(|m| {
-        let normals = Matrix::from_fn(problem.n, m, |j, i| rows[i][j]);
-        let space = ColumnSpace::of(&normals, Threshold::Relative(UNCLEAR[0]));
-        let [none, whole] = UNCLEAR.map(|share| share * space.largest());
-        !space.values().iter().any(|s| *s > none && *s < whole)
-    })
+/// A bound that is newly held is one beyond which the level, whose negative gradient is `along`, would
+/// gain clearly more for each unit than the weak directions that it leaves, or one that its rows hold
+/// anyway.
+fn check_needed(row: usize, steps: &Steps<'_>, along: &[f64], after: &Steps<'_>) {
+    let normal = &steps.problem.rows[row];
+    let (inwards, size) = (steps.inwards(row), norm(normal));
+    let without = Steps { without: Some(row), ..steps.clone() };
+    let (gain, step) = without.best(along);
+    let more = gain - steps.gain(along);
+    let beyond = -inwards * product(normal, &step).0 / size;
+    let least = WEAK * steps.left_free(along) + ROUNDING * norm(along);
+    if beyond > 1e-9 && more > least * beyond {
+        return;
+    }
+    let away: Vec<f64> = normal.iter().map(|x| inwards * x / size).collect();
+    let most = after.gain(&away);
+    let far = FAR * (along.len() as f64).sqrt();
+    assert!(most <= AWAY * far, "bound {row} is held without need: {most:e} away, gain {more:e}");
 }
 
 /// A target that a motion without limits reaches: its direction is kept, at the largest scale.
@@ -148,7 +156,7 @@ fn check_scaled(problem: &mut Problem, random: &mut Random<'_>) {
     level.whole.rows = a.clone();
     level.whole.target.copy_from_slice(&target);
     set.solve_scaled(&mut level, Precision::EXACT, |_, _| false);
-    check_kept(problem, &[], &set);
+    check_kept(problem, &[], &set, norm(set.point()));
     let scale = level.scales[0];
     let left: Vec<f64> =
         a.mul_vec(set.point()).iter().zip(&target).map(|(x, b)| x - scale * b).collect();
@@ -163,11 +171,12 @@ fn check_scaled(problem: &mut Problem, random: &mut Random<'_>) {
     };
     let at = |k: usize| Kept { row: across(k), value: 0.0, scale: 0.0, at: Vec::new() };
     let across: Vec<Kept> = (0..a.rows()).map(at).collect();
-    check_gain(problem, &across, &set, &along, slack(size), "scaled");
+    let steps = Steps::beside(problem, &across, &[], &set);
+    check_gain(&steps, &along, slack(size), "scaled");
 }
 
-/// Levels before keep their values, and all bounds are kept.
-fn check_kept(problem: &Problem, kept: &[Kept], set: &ActiveSet) {
+/// Levels before keep their values, and all bounds are kept, to the rounding of the farthest point.
+fn check_kept(problem: &Problem, kept: &[Kept], set: &ActiveSet, farthest: f64) {
     let y = set.point();
     assert!(y.iter().all(|x| x.is_finite()), "{y:?}");
     let rows = problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper));
@@ -175,7 +184,7 @@ fn check_kept(problem: &Problem, kept: &[Kept], set: &ActiveSet) {
         let now = product(row, y).0;
         let excess = (now - upper).max(lower - now);
         let bound = lower.abs().min(upper.abs());
-        let slack = 10.0 * FEASIBLE * (1.0 + bound + norm(row)) + ROUNDING * norm(row) * norm(y);
+        let slack = 10.0 * FEASIBLE * (1.0 + bound + norm(row)) + ROUNDING * norm(row) * farthest;
         assert!(excess <= slack, "{row:?} beyond its bound by {excess:e}");
     }
     for Kept { row, value, scale, at } in kept {
@@ -193,9 +202,9 @@ fn product(row: &[f64], y: &[f64]) -> (f64, f64) {
 }
 
 /// The nearest point to a goal.
-fn check_nearest(problem: &Problem, kept: &[Kept], set: &ActiveSet, goal: &[f64], what: &str) {
-    let along: Vec<f64> = goal.iter().zip(set.point()).map(|(g, y)| g - y).collect();
-    check_gain(problem, kept, set, &along, slack(norm(goal)), what);
+fn check_nearest(steps: &Steps<'_>, goal: &[f64], what: &str) {
+    let along: Vec<f64> = goal.iter().zip(steps.y).map(|(g, y)| g - y).collect();
+    check_gain(steps, &along, slack(norm(goal)), what);
 }
 
 /// The largest gap for a target of this size, besides a share of the slope.
@@ -204,49 +213,110 @@ fn slack(size: f64) -> f64 {
 }
 
 /// No step gains more than `slack` along the negative gradient, and a share of the slope.
-fn check_gain(
-    problem: &Problem,
-    kept: &[Kept],
-    set: &ActiveSet,
-    along: &[f64],
-    slack: f64,
-    what: &str,
-) {
-    let most = gain(problem, kept, set.point(), along);
-    let slope = FAR * (problem.n as f64).sqrt() * norm(along);
+fn check_gain(steps: &Steps<'_>, along: &[f64], slack: f64, what: &str) {
+    let most = steps.gain(along);
+    let slope = FAR * (along.len() as f64).sqrt() * norm(along);
     assert!(most <= slack + GAP * slope, "{what}: a step gains {most:e} of {slope:e}");
 }
 
-/// The most that a step within the bounds and beside the kept rows gains along a direction.
-fn gain(problem: &Problem, kept: &[Kept], y: &[f64], along: &[f64]) -> f64 {
-    let n = problem.n;
-    let mut kept: Vec<&[f64]> = kept.iter().map(|kept| kept.row.as_slice()).collect();
-    let mut rows: Vec<(&[f64], Interval)> = Vec::new();
-    for (row, (l, u)) in problem.rows.iter().zip(problem.lower.iter().zip(&problem.upper)) {
-        let value = product(row, y).0;
-        let far = FAR * norm(row) * (n as f64).sqrt();
-        let lower = (l - value).min(0.0).max(-far);
-        let upper = (u - value).max(0.0).min(far);
-        if upper - lower < 1e-12 {
-            kept.push(row);
-        } else {
-            rows.push((row, Interval { lower, upper }));
+/// The space of these rows of n entries.
+fn space(rows: &[&[f64]], n: usize) -> ColumnSpace {
+    ColumnSpace::of(&Matrix::from_fn(n, rows.len(), |j, i| rows[i][j]), Threshold::Relative(LOST))
+}
+
+/// The steps from a point that leave some rows as they are, within the bounds.
+#[derive(Clone)]
+struct Steps<'a> {
+    problem: &'a Problem,
+    y: &'a [f64],
+    kept: Vec<&'a [f64]>,
+    /// A row whose bounds do not count.
+    without: Option<usize>,
+}
+
+impl<'a> Steps<'a> {
+    /// Beside the rows of levels and the bounds that are held.
+    fn beside(problem: &'a Problem, kept: &'a [Kept], held: &[usize], set: &'a ActiveSet) -> Self {
+        let held = held.iter().map(|&i| problem.rows[i].as_slice());
+        let kept = kept.iter().map(|kept| kept.row.as_slice()).chain(held).collect();
+        Self { problem, y: set.point(), kept, without: None }
+    }
+
+    /// The bounds of the steps in each row.
+    fn bounds(&self) -> impl Iterator<Item = (&'a [f64], Interval)> {
+        let far = FAR * (self.y.len() as f64).sqrt();
+        let ends = self.problem.lower.iter().zip(&self.problem.upper);
+        self.problem.rows.iter().zip(ends).enumerate().map(move |(i, (row, (l, u)))| {
+            let (value, far) = (product(row, self.y).0, far * norm(row));
+            let free = Interval::symmetric(far);
+            let lower = (l - value).min(0.0).max(-far);
+            let upper = (u - value).max(0.0).min(far);
+            let own = if self.without == Some(i) { free } else { Interval { lower, upper } };
+            (row.as_slice(), own)
+        })
+    }
+
+    /// The sign of steps from the nearer bound of a row.
+    fn inwards(&self, row: usize) -> f64 {
+        let value = product(&self.problem.rows[row], self.y).0;
+        let (below, above) = (value - self.problem.lower[row], self.problem.upper[row] - value);
+        if below < above { 1.0 } else { -1.0 }
+    }
+
+    /// The directions that these rows leave free, but for those lost to rounding.
+    fn free(&self, kept: &[&[f64]]) -> Matrix {
+        space(kept, self.y.len()).complement()
+    }
+
+    /// The rows kept, and the bounds that bind.
+    fn binding(&self) -> Vec<&'a [f64]> {
+        let binds = |b: &Interval, row| {
+            b.upper.min(-b.lower) <= 10.0 * FEASIBLE * (norm(row) + norm(self.y))
+        };
+        let bounds = self.bounds().filter(|(row, b)| binds(b, row)).map(|bound| bound.0);
+        self.kept.iter().copied().chain(bounds).collect()
+    }
+
+    /// The size of the part of `along` that these rows leave free.
+    fn left_free(&self, along: &[f64]) -> f64 {
+        norm(&self.free(&self.binding()).transpose().mul_vec(along))
+    }
+
+    /// By how much roundings of a gradient grow in the multipliers of these rows.
+    fn amplification(&self) -> f64 {
+        let space = space(&self.binding(), self.y.len());
+        let least = space.values().iter().copied().filter(|s| *s > LOST * space.largest());
+        space.largest() / least.fold(space.largest(), f64::min).max(f64::MIN_POSITIVE)
+    }
+
+    /// The most that a step gains along a direction.
+    fn gain(&self, along: &[f64]) -> f64 {
+        self.best(along).0
+    }
+
+    /// The most that a step gains along a direction, and that step.
+    fn best(&self, along: &[f64]) -> (f64, Vec<f64>) {
+        let n = self.y.len();
+        let (equal, rows): (Vec<_>, Vec<_>) =
+            self.bounds().partition(|(_, b)| b.upper - b.lower < 1e-12);
+        let kept: Vec<&[f64]> =
+            self.kept.iter().copied().chain(equal.iter().map(|b| b.0)).collect();
+        let free = self.free(&kept);
+        let m = free.cols();
+        if m == 0 {
+            return (0.0, vec![0.0; n]);
         }
+        let units = Matrix::identity(n);
+        let each = (0..n).map(|i| (units.column(i), Interval::symmetric(FAR)));
+        let rows: Vec<(&[f64], Interval)> = rows.into_iter().chain(each).collect();
+        let on_free =
+            |row: &[f64], k: usize| row.iter().zip(free.column(k)).map(|(a, b)| a * b).sum();
+        let a = Matrix::from_fn(rows.len(), m, |i, k| on_free(rows[i].0, k));
+        let bounds: Vec<Interval> = rows.iter().map(|row| row.1).collect();
+        let first: Vec<f64> = (0..m).map(|k| on_free(along, k)).collect();
+        let step = BoundedLinearProgram::new(&a, &bounds)
+            .maximize(Objective { first: &first, second: &vec![0.0; m] });
+        let gain = first.iter().zip(&step).map(|(a, b)| a * b).sum();
+        (gain, free.mul_vec(&step))
     }
-    let normals = Matrix::from_fn(n, kept.len(), |j, i| kept[i][j]);
-    let free = ColumnSpace::of(&normals, Threshold::Relative(1e-14)).complement();
-    let m = free.cols();
-    if m == 0 {
-        return 0.0;
-    }
-    let units = Matrix::identity(n);
-    let each = (0..n).map(|i| (units.column(i), Interval::symmetric(FAR)));
-    let rows: Vec<(&[f64], Interval)> = rows.into_iter().chain(each).collect();
-    let on_free = |row: &[f64], k: usize| row.iter().zip(free.column(k)).map(|(a, b)| a * b).sum();
-    let a = Matrix::from_fn(rows.len(), m, |i, k| on_free(rows[i].0, k));
-    let bounds: Vec<Interval> = rows.iter().map(|row| row.1).collect();
-    let first: Vec<f64> = (0..m).map(|k| on_free(along, k)).collect();
-    let step = BoundedLinearProgram::new(&a, &bounds)
-        .maximize(Objective { first: &first, second: &vec![0.0; m] });
-    first.iter().zip(&step).map(|(a, b)| a * b).sum()
 }

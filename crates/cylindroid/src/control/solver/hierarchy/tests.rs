@@ -7,8 +7,8 @@ use clarabel::solver::{
 };
 
 use super::super::active_set::{DampedLevel, FEASIBLE, Level, Precision, Weak, Whole};
+use super::ScaledLevel;
 use super::problem::{Problem, Random};
-use super::{ScaledLevel, optimality};
 use crate::linalg::{Matrix, Svd, dot, norm};
 
 impl Problem {
@@ -452,46 +452,4 @@ fn free_levels_are_those_of_the_active_set() {
     }
     let counts = format!("{free} free, {beside_bounds} of them at bounds, {other} others");
     assert!(free > 300 && other > 3000 && beside_bounds > 100, "{counts}");
-}
-
-/// Bytes that made the solver fail, and a few at random.
-#[test]
-fn findings_stay_mended() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/findings/solver");
-    for entry in std::fs::read_dir(folder).into_iter().flatten() {
-        let bytes = std::fs::read(entry.unwrap().path()).unwrap();
-        optimality::check_changed(&bytes, |_| {});
-        optimality::check_changed(&bytes, Problem::reverse_and_scale);
-    }
-    let mut random = Random::seeded(41);
-    let mut unclear = 0;
-    for _ in 0..2000 {
-        let length = random.below(400);
-        let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
-        unclear += u32::from(!optimality::check_changed(&bytes, |_| {}));
-        optimality::check_changed(&bytes, Problem::reverse_and_scale);
-    }
-    assert!(unclear <= 4, "{unclear} of 2000 problems have levels that are not looked at");
-}
-
-/// A direction that is too weak to take part in steps holds no bound for the levels after it.
-#[test]
-fn weak_directions_hold_no_bounds() {
-    let units = |i: usize| (0..3).map(|j| f64::from(u8::from(i == j))).collect();
-    let (lower, upper) = (vec![-1.0; 3], vec![0.0, 0.0, 1.0]);
-    let rows = (0..3).map(units).collect();
-    let problem = Problem { n: 3, boxed: true, rows, lower, upper, levels: Vec::new() };
-    for weak in [1e-7, 1e-8, 0.0] {
-        let mut set = problem.active_set();
-        // At the upper bounds of the first two.
-        assert!(set.start(&[5.0, 5.0, 0.0]));
-        for (row, target) in [([1.0, weak, weak], 1.0), ([0.0, 1.0, 0.0], -0.5)] {
-            let mut level = Level::new(1, 3);
-            level.rows = Matrix::from_fn(1, 3, |_, j| row[j]);
-            level.target[0] = target;
-            set.solve(&mut level, Precision::STRAIGHT);
-        }
-        let y = set.point();
-        assert!(y[0].abs() < 1e-12 && (y[1] + 0.5).abs() < 1e-6, "{weak}: {y:?}");
-    }
 }

@@ -1,0 +1,65 @@
+//! Problems on which the solver failed.
+
+use super::super::active_set::{Level, Precision};
+use super::optimality;
+use super::problem::{Problem, Random};
+use crate::linalg::Matrix;
+
+/// Bytes that made the solver fail, and a few at random.
+#[test]
+fn findings_stay_mended() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/findings/solver");
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        let bytes = std::fs::read(entry.unwrap().path()).unwrap();
+        optimality::check_changed(&bytes, |_| {});
+        optimality::check_changed(&bytes, Problem::reverse_and_scale);
+    }
+    let mut random = Random::seeded(41);
+    for _ in 0..2000 {
+        let length = random.below(400);
+        let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
+        optimality::check_changed(&bytes, |_| {});
+        optimality::check_changed(&bytes, Problem::reverse_and_scale);
+    }
+}
+
+/// A direction that is too weak to take part in steps holds no bound for the levels after it.
+#[test]
+fn weak_directions_hold_no_bounds() {
+    let units = |i: usize| (0..3).map(|j| f64::from(u8::from(i == j))).collect();
+    let (lower, upper) = (vec![-1.0; 3], vec![0.0, 0.0, 1.0]);
+    let rows = (0..3).map(units).collect();
+    let problem = Problem { n: 3, boxed: true, rows, lower, upper, levels: Vec::new() };
+    for weak in [1e-7, 1e-8, 0.0] {
+        let mut set = problem.active_set();
+        // At the upper bounds of the first two.
+        assert!(set.start(&[5.0, 5.0, 0.0]));
+        for (row, target) in [([1.0, weak, weak], 1.0), ([0.0, 1.0, 0.0], -0.5)] {
+            let mut level = Level::new(1, 3);
+            level.rows = Matrix::from_fn(1, 3, |_, j| row[j]);
+            level.target[0] = target;
+            set.solve(&mut level, Precision::STRAIGHT);
+        }
+        let y = set.point();
+        assert!(y[0].abs() < 1e-12 && (y[1] + 0.5).abs() < 1e-6, "{weak}: {y:?}");
+    }
+}
+
+/// A row that depends on others but for 1e-11 keeps its bound in motions that are long enough to show it.
+#[test]
+fn dependent_rows_keep_their_bounds() {
+    let rows = vec![vec![1.0, 0.0], vec![0.0, 1.0], vec![1.0, 1e-11]];
+    let (lower, upper) = (vec![-1.0, -1e6, -1.0], vec![0.0, 1e6, 0.0]);
+    let problem = Problem { n: 2, boxed: true, rows, lower, upper, levels: Vec::new() };
+    for far in [1.0, 1e3, 1e6] {
+        let mut set = problem.active_set();
+        assert!(set.start(&[1.0, 0.0]));
+        let mut level = Level::new(2, 2);
+        level.rows = Matrix::identity(2);
+        level.target.copy_from_slice(&[1.0, far]);
+        set.solve(&mut level, Precision::STRAIGHT);
+        let y = set.point();
+        assert!(y[0] <= 0.0 && y[0] + 1e-11 * y[1] <= 1.1e-10, "{far}: {y:?}");
+        assert!(y[1] >= far.min(9.0), "{far}: {y:?}");
+    }
+}
