@@ -30,7 +30,7 @@ const ROUND: f64 = 4_000.0;
 /// What runs, its number of steps, and the run: it times each step.
 type Scenario = (&'static str, usize, fn(usize) -> Vec<u128>);
 
-const SCENARIOS: [Scenario; 11] = [
+const SCENARIOS: [Scenario; 12] = [
     ("panda, away from limits", 1_000_000, |steps| circle("panda", true, 0.1, steps)),
     ("panda", 1_000_000, |steps| circle("panda", false, 0.1, steps)),
     ("ur5e", 1_000_000, |steps| circle("ur5e", false, 0.1, steps)),
@@ -38,7 +38,8 @@ const SCENARIOS: [Scenario; 11] = [
     ("panda, many tasks", 200_000, |steps| panda_of_tasks(0, steps)),
     ("panda, 2 obstacles", 200_000, |steps| panda_of_tasks(2, steps)),
     ("panda, 500 pairs", 50_000, panda_of_spheres),
-    ("humanoid", 50_000, humanoid),
+    ("humanoid", 50_000, |steps| humanoid(true, steps)),
+    ("humanoid, one level", 50_000, |steps| humanoid(false, steps)),
     ("stewart, many tasks", 100_000, stewart_of_tasks),
     ("stewart", 100_000, |steps| object("stewart", steps)),
     ("32 loops", 2_000, |steps| object("", steps)),
@@ -267,13 +268,14 @@ fn walker() -> Mechanism {
     builder.build().unwrap()
 }
 
-/// Hands and feet at poses, the centre of mass above the feet, a posture.
-fn humanoid(steps: usize) -> Vec<u128> {
+/// Hands and feet at poses, the centre of mass above the feet, a posture; the hands below the feet, or
+/// all but the posture on one level.
+fn humanoid(by_levels: bool, steps: usize) -> Vec<u128> {
     let robot = walker();
     let bend = |i: usize| if i < 6 { 0.0 } else { 0.4 * f64::from(1 - 2 * (i as i32 % 2)) };
     let q: Vec<f64> = (0..robot.n()).map(bend).collect();
     let frames = ["left_arm6", "right_arm6", "left_leg5", "right_leg5"];
-    let level = |name: &&str| usize::from(name.contains("arm"));
+    let level = |name: &&str| usize::from(by_levels && name.contains("arm"));
     let mut tasks: Vec<MotionTask> =
         frames.iter().map(|f| frame(&robot, f, Task::POSE, &q).at_level(level(f))).collect();
     let mut masses = cylindroid::kinematics::MassMatrix::new(&robot);

@@ -5,8 +5,11 @@
 use std::fmt;
 use std::ops::{Index, IndexMut, Mul};
 
-use super::vector::dot;
+use super::vector::{dot, dot_unrolled};
 use crate::tolerance::SYMMETRIC;
+
+/// Squares of numbers between these neither overflow nor vanish, many of them together.
+const PLAIN: std::ops::Range<f64> = 1e-140..1e140;
 
 /// A dense `rows x cols` matrix, stored by columns.
 #[derive(Clone, PartialEq, Default)]
@@ -260,6 +263,9 @@ impl Matrix {
         let largest = self.max_abs();
         if largest == 0.0 || !largest.is_finite() {
             return largest;
+        }
+        if PLAIN.contains(&largest) {
+            return dot_unrolled(&self.data, &self.data).sqrt();
         }
         largest * self.data.iter().map(|a| (a / largest).powi(2)).sum::<f64>().sqrt()
     }

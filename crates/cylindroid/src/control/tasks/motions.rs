@@ -16,7 +16,7 @@ use crate::control::servo::{
 use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::Coupling;
 use crate::error::Result;
-use crate::linalg::norm;
+use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
 use crate::tolerance::{MIN_ACTUATED_SHARE, UNACTUATED};
 
@@ -119,6 +119,23 @@ impl Motions {
                 let n = loops.motions.q().len();
                 let column = &loops.coupling.motions.column(j)[..n];
                 column.iter().enumerate().map(|(i, m)| if *m == 0.0 { 0.0 } else { g(i) * m }).sum()
+            }
+        }
+    }
+
+    /// Writes column `j` of `J M`.
+    pub(super) fn load_column(&self, jacobian: &Matrix, j: usize, out: &mut [f64]) {
+        match self {
+            Self::Tree(columns) => {
+                let column = out.iter_mut().zip(jacobian.column(j));
+                column.for_each(|(x, a)| *x = columns[j] * a);
+            }
+            Self::Loops(loops) => {
+                out.fill(0.0);
+                let motions = loops.coupling.motions.column(j);
+                for i in (0..jacobian.cols()).filter(|&i| motions[i] != 0.0) {
+                    out.iter_mut().zip(jacobian.column(i)).for_each(|(x, a)| *x += a * motions[i]);
+                }
             }
         }
     }

@@ -122,15 +122,15 @@ impl TaskServo {
                 let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
                 let root = task.weight.sqrt();
                 let mut error = 0.0;
-                for r in 0..rows.error.len() {
-                    let scale = root * rows.unit(r, length);
-                    error += (scale * rows.error[r]).powi(2);
-                    whole.target[member.rows.start + r] =
-                        scale * (task.gain * rows.error[r] + rows.feed_forward[r]);
-                    for j in 0..whole.rows.cols() {
-                        let entry = self.motions.entry(|i| rows.jacobian[(r, i)], j);
-                        whole.rows[(member.rows.start + r, j)] = scale * entry;
-                    }
+                let scale = |r: usize| root * rows.unit(r, length);
+                for (r, target) in whole.target[member.rows.clone()].iter_mut().enumerate() {
+                    error += (scale(r) * rows.error[r]).powi(2);
+                    *target = scale(r) * (task.gain * rows.error[r] + rows.feed_forward[r]);
+                }
+                for j in 0..whole.rows.cols() {
+                    let column = &mut whole.rows.column_mut(j)[member.rows.clone()];
+                    self.motions.load_column(&rows.jacobian, j, column);
+                    column.iter_mut().enumerate().for_each(|(r, x)| *x *= scale(r));
                 }
                 member.error = error.sqrt();
                 let gain = if task.gain > 0.0 { task.gain } else { USUAL_GAIN };
