@@ -45,6 +45,7 @@ cargo xtask <task>
   c-install DIR [--use]
             builds the C library and installs it with headers and files for CMake and pkg-config;
             with --use builds and runs the examples with what is installed
+  c-step    prints the time of a servo step from C++ beside that from Rust (release build, g++)
   book      builds the book into target/book and checks its links (needs Python, Node.js with npm,
             PyPI and the npm registry); --serve shows it while you write, --outputs writes what
             its commands and its Python print into the pages, and the notebooks of the tutorials
@@ -135,6 +136,7 @@ fn run() -> Result<()> {
         Some("python") => python::test(),
         Some("viewer") => viewer::task(std::env::args().nth(2).as_deref()),
         Some("c-install") => c_install::task(&std::env::args().skip(2).collect::<Vec<String>>()),
+        Some("c-step") => steps::c_step(),
         Some("book") => book::task(std::env::args().nth(2).as_deref()),
         Some("layers") => layers::task(std::env::args().nth(2).as_deref()),
         Some("python-names") => python_names::check(),

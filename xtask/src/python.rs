@@ -70,7 +70,7 @@ pub(crate) fn source_distribution() -> Result<PathBuf> {
 }
 
 /// A Python that has maturin.
-fn with_maturin() -> Result<PathBuf> {
+pub(crate) fn with_maturin() -> Result<PathBuf> {
     let python = environment(&root().join("target/maturin-venv"))?;
     let wanted = fs::read_to_string(root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
     let maturin = wanted.lines().find(|line| line.starts_with("maturin"));

@@ -1,6 +1,7 @@
 //! A release, up to the upload: the crates and the source distribution of the Python package, with
-//! the page of the viewer inside, are made, listed with their sizes, and built from their files; the
-//! public interface is compared with that of a commit.
+//! the page of the viewer inside, are made, listed with their sizes, and built from their files, with
+//! the wheel and the library for C and C++ of this platform; the public interface is compared with that
+//! of a commit.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -70,19 +71,27 @@ pub(crate) fn task(arguments: &[String]) -> Result<()> {
     let changed = captured(Command::new("git").args(["status", "--porcelain"]))?;
     let (crates, distribution) = packages()?;
     println!("what would be uploaded, version {VERSION}:");
-    for file in crates.iter().chain([&distribution]) {
-        let size = fs::metadata(file)?.len();
-        println!("{:>8.2} MB  {}", size as f64 / 1e6, file.display());
-        ensure!(
-            *file == distribution || size < LARGEST_CRATE,
-            "crates.io refuses crates of more than 10 MB"
-        );
-    }
+    let mut files: Vec<&PathBuf> = crates.iter().chain([&distribution]).collect();
+    list(&files)?;
+    let is_small = |file: &PathBuf| fs::metadata(file).is_ok_and(|file| file.len() < LARGEST_CRATE);
+    ensure!(crates.iter().all(is_small), "crates.io refuses crates of more than 10 MB");
     if !changed.is_empty() {
         println!("\nnot in the last commit, and yet in the packages:\n{changed}");
     }
     if is_built {
-        build(&crates, &distribution)?;
+        let built = build(&crates, &distribution)?;
+        println!("\nwhat would be uploaded, version {VERSION}:");
+        files.extend(&built);
+        list(&files)?;
+    }
+    Ok(())
+}
+
+/// Prints files with their sizes.
+fn list(files: &[&PathBuf]) -> Result<()> {
+    for file in files {
+        let size = fs::metadata(file)?.len();
+        println!("{:>8.2} MB  {}", size as f64 / 1e6, file.display());
     }
     Ok(())
 }
@@ -108,8 +117,8 @@ fn packages() -> Result<(Vec<PathBuf>, PathBuf)> {
 }
 
 /// Builds each package from its file alone, in a folder outside the workspace, and does its main
-/// job.
-fn build(crates: &[PathBuf], distribution: &Path) -> Result<()> {
+/// job. Gives what is for this platform: the library for C and C++, and the wheel.
+fn build(crates: &[PathBuf], distribution: &Path) -> Result<[PathBuf; 2]> {
     let folder = Passing(std::env::temp_dir().join(format!("cylindroid-{}", std::process::id())));
     let _ = fs::remove_dir_all(&folder.0);
     fs::create_dir_all(&folder.0)?;
@@ -153,9 +162,14 @@ fn build(crates: &[PathBuf], distribution: &Path) -> Result<()> {
     let prefix = folder.0.join("c");
     c_install::install(&prefix)?;
     c_install::use_installed(&prefix, &folder.0)?;
+    let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
+    let archive = root().join(format!("target/package/cylindroid-c-{VERSION}-{arch}-{os}.tar.gz"));
+    let tar = ["--create", "--gzip", "--file"];
+    run(Command::new("tar").args(tar).arg(&archive).arg("--directory").arg(&prefix).arg("."))?;
 
     println!("\nthe Python package of {}", distribution.display());
-    python::use_alone(distribution)
+    python::use_alone(distribution)?;
+    Ok([archive, python::wheel(&python::with_maturin()?)?])
 }
 
 /// The page comes from the binary: there is no workspace beside it.

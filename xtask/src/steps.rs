@@ -205,6 +205,14 @@ pub(crate) fn viewer_load(seconds: Option<&str>) -> Result<()> {
     run(cargo(&arguments).env("CYLINDROID_LOAD", seconds.unwrap_or("60")))
 }
 
+/// A step of the servo from C++ beside one from Rust; a measurement, not a check.
+pub(crate) fn c_step() -> Result<()> {
+    let filter = ["test", "--release", "--package", "cylindroid-c", "--test", "programs"];
+    let show =
+        ["--", "--ignored", "--exact", "--nocapture", "a_step_from_cpp_beside_one_from_rust"];
+    run(&mut cargo(&[&filter[..], &show].concat()))
+}
+
 /// Millions of servo steps on random robots; fails if one leaves a limit.
 pub(crate) fn limits(millions: Option<&str>, first: Option<&str>) -> Result<()> {
     let millions: f64 = millions.map_or(Ok(10.0), str::parse).context("millions of steps")?;

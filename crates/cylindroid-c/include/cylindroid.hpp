@@ -14,6 +14,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -42,12 +43,61 @@ inline void check(cyl_status status) {
     if (status != CYL_OK) throw Error(status, cyl_last_error());
 }
 
-/// Numbers that belong to somebody else: of std::vector, std::array, std::span, Eigen vectors.
+namespace detail {
+template <class T>
+using RemoveReference = std::remove_const_t<std::remove_reference_t<T>>;
+
+template <class C, class = void>
+struct HasStrides : std::false_type {};
+template <class C>
+struct HasStrides<C, std::void_t<decltype(std::declval<const C &>().innerStride())>>
+    : std::true_type {};
+
+/// Containers whose elements follow each other; matrices by columns. Of Eigen, blocks and rows of
+/// matrices may leave gaps: they are refused, as matrices by rows are by the compiler.
+template <class C>
+std::size_t contiguous_size(const C &c) {
+    if constexpr (HasStrides<C>::value) {
+        static_assert(C::IsVectorAtCompileTime || !C::IsRowMajor,
+                      "matrices of cylindroid lie by columns: use Eigen::ColMajor");
+        const bool follows = c.innerStride() == 1 && (C::IsVectorAtCompileTime || c.cols() <= 1 ||
+                                                      c.outerStride() == c.rows());
+        if (!follows && c.size() > 1)
+            throw Error(CYL_DIMENSION, "the numbers do not lie one after the other: copy the block");
+    }
+    return static_cast<std::size_t>(c.size());
+}
+
+template <class C>
+using Data = decltype(std::declval<C &>().data());
+
+/// A view may be passed as it is made; a container that would be gone with its numbers may not.
+template <class C, class = void>
+struct IsView : std::false_type {};
+template <class C>
+struct IsView<C, std::enable_if_t<!HasStrides<C>::value &&
+                                  std::is_same_v<decltype(std::declval<const C &>().data()),
+                                                 double *>>> : std::true_type {};
+#ifdef CYLINDROID_HAS_EIGEN
+template <class M, int Options, class Stride>
+struct IsView<Eigen::Map<M, Options, Stride>> : std::true_type {};
+template <class M, int Options, class Stride>
+struct IsView<Eigen::Ref<M, Options, Stride>> : std::true_type {};
+template <class M, int Rows, int Cols, bool Inner>
+struct IsView<Eigen::Block<M, Rows, Cols, Inner>> : std::true_type {};
+template <class V, int Size>
+struct IsView<Eigen::VectorBlock<V, Size>> : std::true_type {};
+#endif
+}  // namespace detail
+
+/// Numbers that belong to somebody else: of std::vector, std::array, std::span, Eigen.
 class Numbers {
    public:
     Numbers(const double *data, std::size_t size) : data_(data), size_(size) {}
-    template <class Container, class = decltype(std::declval<const Container &>().data())>
-    Numbers(const Container &c) : data_(c.data()), size_(static_cast<std::size_t>(c.size())) {}
+    template <class Container,
+              class = std::enable_if_t<
+                  std::is_convertible_v<detail::Data<const Container>, const double *>>>
+    Numbers(const Container &c) : data_(c.data()), size_(detail::contiguous_size(c)) {}
     const double *data() const noexcept { return data_; }
     std::size_t size() const noexcept { return size_; }
     const double *sized(std::size_t expected, const char *what) const {
@@ -63,12 +113,16 @@ class Numbers {
     std::size_t size_;
 };
 
-/// The same, to be written to.
+/// The same, to be written to: containers that have a name, and views.
 class Out {
    public:
     Out(double *data, std::size_t size) : data_(data), size_(size) {}
-    template <class Container, class = decltype(std::declval<Container &>().data())>
-    Out(Container &c) : data_(c.data()), size_(static_cast<std::size_t>(c.size())) {}
+    template <class Container, class C = detail::RemoveReference<Container>,
+              class = std::enable_if_t<
+                  !std::is_same_v<C, Out> &&
+                  (std::is_lvalue_reference_v<Container> || detail::IsView<C>::value) &&
+                  std::is_same_v<detail::Data<std::remove_reference_t<Container>>, double *>>>
+    Out(Container &&c) : data_(c.data()), size_(detail::contiguous_size(c)) {}
     double *sized(std::size_t expected, const char *what) const {
         Numbers(data_, size_).sized(expected, what);
         return data_;
@@ -90,6 +144,16 @@ using Handle = std::unique_ptr<T, Deleter<T, Free>>;
 
 /// A pose as 16 numbers by columns.
 using Matrix4 = std::array<double, 16>;
+
+#ifdef CYLINDROID_HAS_EIGEN
+/// A pose as a matrix of Eigen, without a copy.
+inline Eigen::Map<Eigen::Matrix4d> as_eigen(Matrix4 &pose) {
+    return Eigen::Map<Eigen::Matrix4d>(pose.data());
+}
+inline Eigen::Map<const Eigen::Matrix4d> as_eigen(const Matrix4 &pose) {
+    return Eigen::Map<const Eigen::Matrix4d>(pose.data());
+}
+#endif
 
 /// A robot or mechanism; immutable.
 class Mechanism {
@@ -241,5 +305,69 @@ class Servo {
     std::size_t n_;
     detail::Handle<cyl_servo, cyl_servo_free> handle_;
 };
+
+/// Many configurations of one frame at once.
+class Batch {
+   public:
+    explicit Batch(const Mechanism &robot, std::size_t frame = CYL_DEFAULT_FRAME) : n_(robot.n()) {
+        cyl_batch *p = nullptr;
+        check(cyl_batch_new(robot.get(), frame, &p));
+        handle_.reset(p);
+    }
+    /// Numbers of a configuration that `measures` writes.
+    static std::size_t measure_count() noexcept { return cyl_measure_count(); }
+    /// The place of a measure among them, by its name ("dof", "volume", ...).
+    static std::size_t measure(const std::string &name) {
+        std::size_t index = 0;
+        check(cyl_measure_index(name.c_str(), &index));
+        return index;
+    }
+    /// Poses of N configurations of n numbers each: 16 numbers by columns for each.
+    void poses(Numbers q, Out out) const {
+        const std::size_t count = count_of(q);
+        check(cyl_batch_poses(handle_.get(), q.data(), count, out.sized(16 * count, "poses")));
+    }
+    /// Jacobians, 6 x n by columns for each.
+    void jacobians(Numbers q, Out out, cyl_reference reference = CYL_LOCAL_WORLD_ALIGNED) const {
+        const std::size_t count = count_of(q);
+        check(cyl_batch_jacobians(handle_.get(), q.data(), count, reference,
+                                  out.sized(6 * n_ * count, "jacobians")));
+    }
+    void measures(Numbers q, Out out) const {
+        const std::size_t count = count_of(q);
+        check(cyl_batch_measures(handle_.get(), q.data(), count,
+                                 out.sized(measure_count() * count, "measures")));
+    }
+
+   private:
+    /// Robots without joints have no configurations to count.
+    std::size_t count_of(Numbers q) const {
+        const std::size_t count = n_ == 0 ? 0 : q.size() / n_;
+        q.sized(count * n_, "q");
+        return count;
+    }
+    std::size_t n_;
+    detail::Handle<cyl_batch, cyl_batch_free> handle_;
+};
+
+/// An inverse of a matrix by columns, by a method of the command line ("truncated", "damped", ...):
+/// n x m numbers by columns. Returns the rank.
+inline std::size_t inverse(Numbers matrix, std::size_t rows, std::size_t cols,
+                           const std::string &method, Out out) {
+    std::size_t rank = 0;
+    check(cyl_inverse(matrix.sized(rows * cols, "matrix"), rows, cols, method.c_str(),
+                      out.sized(rows * cols, "inverse"), &rank));
+    return rank;
+}
+
+/// The hyperbolic pseudoinverse of a 6 x n matrix of twists (linear rows first) for the pitch h
+/// [m/rad]: n x 6 numbers by columns. False if it does not exist.
+inline bool hyperbolic_pseudoinverse(Numbers jacobian, double h, Out out) {
+    const std::size_t cols = jacobian.size() / 6;
+    bool exists = false;
+    check(cyl_hyperbolic(jacobian.sized(6 * cols, "jacobian"), cols, h, &exists,
+                         out.sized(6 * cols, "inverse")));
+    return exists;
+}
 
 }  // namespace cylindroid

@@ -4,7 +4,10 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
+use cylindroid::control::{ServoGains, Target};
+use cylindroid::{Pose, Twist, Vec3};
 use cylindroid_c as _;
 
 /// The static library, beside this test.
@@ -33,10 +36,33 @@ fn is_there(program: &str) -> bool {
     Command::new(program).arg("--version").output().is_ok()
 }
 
+/// The folder of Eigen's headers where `CYLINDROID_EIGEN` or `pkg-config` names one.
+fn eigen() -> Option<PathBuf> {
+    let named = std::env::var_os("CYLINDROID_EIGEN").map(PathBuf::from);
+    named.or_else(|| {
+        let asked = Command::new("pkg-config").args(["--cflags-only-I", "eigen3"]).output().ok()?;
+        let text = String::from_utf8(asked.stdout).ok()?;
+        text.trim().strip_prefix("-I").map(PathBuf::from)
+    })
+}
+
 fn build(compiler: &str, standard: &str, source: &str, folder: &Path) -> PathBuf {
+    build_with(None, compiler, standard, source, folder)
+}
+
+fn build_with(
+    eigen: Option<&Path>,
+    compiler: &str,
+    standard: &str,
+    source: &str,
+    folder: &Path,
+) -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = folder.join(format!("{compiler}-{source}"));
     let mut command = Command::new(compiler);
+    eigen.iter().for_each(|folder| {
+        command.arg("-isystem").arg(folder);
+    });
     command.args([standard, "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I"]);
     command.arg(here.join("include")).arg(here.join("examples").join(source));
     command.arg(library()).args(["-lpthread", "-ldl", "-lm", "-o"]).arg(&program);
@@ -57,13 +83,67 @@ fn programs_in_c_and_cpp_run() {
         let program = build(c, "-std=c11", "servo.c", folder.path());
         let text = output(&mut Command::new(program));
         assert!(text.contains("panda: reached") && text.contains("stewart: reached"), "{text}");
-        for standard in ["-std=c++17", "-std=c++20"] {
-            let program = build(cpp, standard, "loop.cpp", folder.path());
+        let standards = ["-std=c++17", "-std=c++20"].map(|standard| (standard, None));
+        let with_eigen = eigen().map(|folder| ("-std=c++17", Some(folder)));
+        for (standard, eigen) in standards.into_iter().chain(with_eigen) {
+            let program = build_with(eigen.as_deref(), cpp, standard, "loop.cpp", folder.path());
             let text = output(&mut Command::new(program));
             assert!(text.contains("median") && text.contains("refused"), "{text}");
         }
     }
     assert!(compilers > 0, "neither gcc nor clang is installed");
+}
+
+/// The loop of the example in C++: the median time of a step [us].
+fn median_step(steps: usize) -> f64 {
+    let robot = cylindroid::catalogue::load("panda").unwrap();
+    let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
+    let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
+    let mut options = cylindroid::ServoOptions::new(&robot);
+    options.gain = ServoGains { position: 20.0, orientation: 20.0 };
+    let mut servo = cylindroid::Servo::new(&robot, options.clone()).unwrap();
+    let mut velocities = vec![0.0; robot.n()];
+    let (w, r) = (2.0, 0.05);
+    let mut times: Vec<u128> = (0..steps)
+        .map(|k| {
+            let t = k as f64 * options.dt;
+            let ramp = t.min(1.0);
+            let ((sin, cos), growth) = ((w * t).sin_cos(), if t < 1.0 { r } else { 0.0 });
+            let way = Vec3::new(ramp * r * (cos - 1.0), ramp * r * sin, 0.0);
+            let pose = Pose { translation: start.translation + way, ..start };
+            let along = Vec3::new(
+                growth.mul_add(cos - 1.0, -ramp * r * w * sin),
+                growth.mul_add(sin, ramp * r * w * cos),
+                0.0,
+            );
+            let target =
+                Target { pose, feed_forward: Twist { linear: along, angular: Vec3::ZERO } };
+            let before = Instant::now();
+            servo.step(&q, target).unwrap();
+            velocities.copy_from_slice(servo.joint_velocities());
+            let time = before.elapsed().as_nanos();
+            servo.advance(&mut q);
+            time
+        })
+        .collect();
+    times.sort_unstable();
+    times[steps / 2] as f64 * 1e-3
+}
+
+/// `cargo xtask c-step`: a step of the servo from C++ beside one from Rust, in turn, and its loop at
+/// 1 kHz for 20 s.
+#[test]
+#[ignore = "a measurement"]
+fn a_step_from_cpp_beside_one_from_rust() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = build("g++", "-std=c++17", "loop.cpp", folder.path());
+    for _ in 0..5 {
+        let text = output(Command::new(&program).arg("200000"));
+        let cpp = text.strip_prefix("median ").and_then(|rest| rest.split_once(" us"));
+        let cpp: f64 = cpp.unwrap().0.parse().unwrap();
+        let rust = median_step(200_000);
+        println!("panda, us a step: C++ {cpp:.3}, Rust {rust:.3}: {:+.0} ns", 1e3 * (cpp - rust));
+    }
 }
 
 /// The controller of ros2_control, compiled with stubs of the headers of ROS 2 and run.
