@@ -54,6 +54,42 @@ test("a report is asked for again only after its answer, and then for what has c
     assert.ok(answers > 1, "asked for after the robot moved");
   }));
 
+test("answers that come after another frame was chosen are not shown", () =>
+  visit(["panda"], async (page) => {
+    for (const name of ["mobility", "compare"]) {
+      const panel = await openPanel(page, name);
+      await panel.locator("dl, table").first().waitFor();
+    }
+    await page.evaluate(() => {
+      /** @type {any} */
+      const { session } = /** @type {any} */ (window).viewer;
+      const [emit, heard] = [session.emit.bind(session), /** @type {any[]} */ ([])];
+      /** @type {any} */ (window).heard = heard;
+      session.emit = (/** @type {string} */ name, /** @type {any} */ value) => {
+        if (name === "compare" || value?.name === "mobility") heard.push([name, value]);
+        return emit(name, value);
+      };
+    });
+    await untilReached(page, await moveTarget(page, "z", -0.02));
+    await until(page, '["compare", "report"].every((name) => window.heard.some((one) => one[0] === name))');
+    await page.getByLabel("Frame", { exact: true }).selectOption("link5");
+    await until(page, 'scene.frame === "link5"');
+    await page.waitForTimeout(1500);
+    const [before, after] = await page.evaluate(() => {
+      const text = () => ["mobility", "compare"].map((name) => document.querySelector(`[data-panel="${name}"]`)?.textContent);
+      const before = text();
+      /** @type {any} */
+      const { session } = /** @type {any} */ (window).viewer;
+      for (const which of ["compare", "report"]) {
+        const [name, value] = /** @type {any} */ (window).heard.find((/** @type {any} */ one) => one[0] === which);
+        // The answer of before, with other numbers.
+        session.emit(name, JSON.parse(JSON.stringify(value).replaceAll(/\d\.\d+/g, "7.7")));
+      }
+      return [before, text()];
+    });
+    assert.deepEqual(after, before);
+  }));
+
 test("the focus stays on a switch of an actuated joint, on a list and on the buttons of the handle", () =>
   visit(["five-bar"], async (page) => {
     const actuator = page.locator('[data-actuator="q5"]');

@@ -22,6 +22,8 @@ export class Compare {
   private readonly result = h("div", {});
   private timer = 0;
   private asked: number | null = null;
+  /** The first question of this scene: answers to those before may be of another frame or model. */
+  private oldest: number | null = null;
   /** What was asked last: an answer to the same would be the same. */
   private question = "";
 
@@ -40,7 +42,10 @@ export class Compare {
       this.pointMoved(open && !this.session.scene?.closed ? this.point : null);
       this.later();
     });
-    session.on("compare", (comparison) => this.show(comparison));
+    session.on("compare", (comparison) => {
+      const { reply_to } = comparison;
+      if (typeof reply_to === "number" && this.oldest !== null && reply_to >= this.oldest) this.show(comparison);
+    });
     session.on("state", () => this.later());
     session.on("failure", ({ reply_to, message }) => {
       if (reply_to !== this.asked) return;
@@ -61,7 +66,7 @@ export class Compare {
     }
     const names = scene.methods.map((method) => method.name);
     const old = [this.first.value, this.second.value];
-    this.question = "";
+    [this.question, this.oldest] = ["", null];
     [this.first, this.second].forEach((choice, i) => {
       this.kept[i]?.fill(names, () => names.map((name) => h("option", { value: name }, name.replaceAll("-", " "))));
       const preferred = [old[i], i === 0 ? "truncated" : "hyperbolic", names[i]].find((name) => name && names.includes(name));
@@ -114,6 +119,7 @@ export class Compare {
     const question = JSON.stringify([asked, state.q, state.target]);
     if (question === this.question) return;
     this.asked = this.session.send(asked);
+    this.oldest ??= this.asked;
     this.question = this.asked === null ? "" : question;
   }
 

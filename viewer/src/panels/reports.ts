@@ -78,7 +78,8 @@ export class Reports {
   }
 
   private take(report: Report): void {
-    this.watches.get(report.name)?.show(report.report);
+    // An answer to a question from before this scene may be of another frame or model.
+    if (this.underWay.get(report.name) === report.reply_to) this.watches.get(report.name)?.show(report.report);
     if (typeof report.reply_to === "number") this.asked.delete(report.reply_to);
     this.answered(report.name, report.reply_to);
   }
