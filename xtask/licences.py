@@ -15,7 +15,7 @@ import sys
 import tomllib
 
 #: Of programs that build and test; nothing of them is in what is published.
-TOOLS = {"0BSD", "BSL-1.0", "CC0-1.0", "MIT-CMU", "MPL-2.0", "PSF-2.0", "Qhull"}
+TOOLS = {"0BSD", "BSL-1.0", "CC0-1.0", "MIT-0", "MIT-CMU", "MPL-2.0", "PSF-2.0", "Qhull"}
 #: Published to users of plots and of the package: numpy and matplotlib with what they need.
 PUBLISHED = {"0BSD", "CC0-1.0", "MIT-CMU", "PSF-2.0"}
 #: Words of classifiers and of older metadata.
