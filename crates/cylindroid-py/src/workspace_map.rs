@@ -1,8 +1,8 @@
 //! Maps: the workspace in the coordinates of the platform, with singularity loci.
 
-use cylindroid::sweep::{Locus, Map, MapOptions, WorkingMode};
+use cylindroid::sweep::{Locus, Map, MapOptions, Surface, WorkingMode};
 use cylindroid::{Error, Mechanism};
-use numpy::IntoPyArray;
+use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -35,6 +35,11 @@ use crate::sweep::{axes, count_of, go_on};
 ///     Curves, for two axes: 'kind' ('type I', 'type II', 'passive' or 'limit'), 'limit' (the
 ///     coordinate or None), 'modes' (indices), 'closed', 'points' (values of the axes, (K, 2)) and 'q'
 ///     (configurations, (K, n)).
+/// surfaces : list of dict
+///     Singularities of type II, for three axes: 'kind' ('type II' or 'passive', at a vertex in the
+///     middle), 'mode' (an index), 'closed' (each side of a triangle is one of another), 'vertices'
+///     (values of the axes, (K, 3)), 'triangles' (indices of vertices, (T, 3), counterclockwise as
+///     seen from where 'type_two' is positive) and 'q' (configurations, (K, n)).
 #[pyclass(frozen, module = "cylindroid", name = "WorkspaceMap")]
 #[derive(Debug)]
 pub(crate) struct PyWorkspaceMap {
@@ -82,6 +87,12 @@ impl PyWorkspaceMap {
     fn loci<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let loci = self.map.loci.iter().map(|locus| self.locus(py, locus));
         PyList::new(py, loci.collect::<PyResult<Vec<_>>>()?)
+    }
+
+    #[getter]
+    fn surfaces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let surfaces = self.map.surfaces.iter().map(|surface| self.surface(py, surface));
+        PyList::new(py, surfaces.collect::<PyResult<Vec<_>>>()?)
     }
 
     #[getter]
@@ -185,6 +196,22 @@ impl PyWorkspaceMap {
         dict.set_item("q", rows(&locus.q, self.names.len())?)?;
         Ok(dict)
     }
+
+    fn surface<'py>(&self, py: Python<'py>, surface: &Surface) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let count = surface.vertices.len();
+        let vertices = arrays::rows(py, Some(count), 3, surface.vertices.iter())?;
+        let q = arrays::rows(py, Some(count), self.names.len(), surface.q.iter())?;
+        let triangles: Vec<usize> = surface.triangles.iter().flatten().copied().collect();
+        let triangles = triangles.into_pyarray(py).reshape([surface.triangles.len(), 3])?;
+        dict.set_item("kind", surface.kind.name())?;
+        dict.set_item("mode", surface.mode)?;
+        dict.set_item("closed", surface.closed)?;
+        dict.set_item("vertices", vertices)?;
+        dict.set_item("triangles", triangles)?;
+        dict.set_item("q", q)?;
+        Ok(dict)
+    }
 }
 
 /// The workspace of an arm or a parallel robot over components of its platform's pose, for each
@@ -216,7 +243,7 @@ impl PyWorkspaceMap {
 /// seed : int
 ///     Selects other random restarts.
 /// loci : bool
-///     Follow the curves, for two axes.
+///     Follow the curves, for two axes, or find the surfaces, for three.
 /// threads : int, optional
 ///     Default: as many as the machine has. The map does not depend on it.
 ///

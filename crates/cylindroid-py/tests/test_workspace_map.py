@@ -81,6 +81,29 @@ def test_workspaces_have_sizes_and_holes(found):
         found.workspace(4)
 
 
+def test_surfaces_of_three_axes():
+    robot = cy.load("3rrr")
+    over = {"x": (-0.31, 0.29, 7), "y": (-0.29, 0.33, 7), "rz": (-1.57, 1.53, 9)}
+    found = cy.workspace_map(robot, over, starts=16)
+    assert found.loci == [] and found.surfaces
+    for surface in found.surfaces:
+        assert surface["kind"] in ("type II", "passive") and surface["mode"] < len(found.modes)
+        vertices, triangles, q = surface["vertices"], surface["triangles"], surface["q"]
+        assert vertices.shape == (len(q), 3) and q.shape[1] == robot.n
+        assert triangles.shape[1] == 3 and set(triangles.ravel()) == set(range(len(q)))
+        pose = robot.fk(q, robot.reference)
+        assert np.abs(pose[:, :2, 3] - vertices[:, :2]).max() < 1e-9
+        # A side has two triangles, which have it in reverse directions, or it is at the end.
+        sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+        once = {(int(a), int(b)) for a, b in sides}
+        assert len(once) == len(sides)
+        assert surface["closed"] == all((b, a) in once for a, b in once)
+    again = cy.workspace_map(robot, over, starts=16, threads=1)
+    for a, b in zip(found.surfaces, again.surfaces):
+        assert all(np.array_equal(a[name], b[name]) for name in ("vertices", "triangles", "q"))
+    assert cy.workspace_map(robot, over, starts=2, loci=False).surfaces == []
+
+
 def test_components_are_held_or_free():
     stewart = cy.load("stewart")
     over = {"x": (-0.1, 0.1, 3), "y": (-0.1, 0.1, 3)}

@@ -17,7 +17,8 @@ The platform is the reference of a closed chain, or the tool of an arm. Every wo
 random restarts, is followed from cell to cell of the grid by steps that pass no singularity of type \
 I. Curves of singularities, of type I (boundaries, where legs stretch), type II (the actuated joints \
 no longer hold the platform), passive (only passive joints move) and of position limits, are refined \
-by Newton's method and followed by predictor and corrector, for two axes.
+by Newton's method and followed by predictor and corrector, for two axes. For three axes, those of type \
+II and passive ones are surfaces of triangles.
 
 Components that are neither axes nor given keep their value at the start as far as the mechanism has \
 freedoms for them, and follow otherwise.
@@ -31,6 +32,7 @@ Examples:
   cylindroid map 3rps --over pitch=-1.5:1.5:61 --over roll=-1.5:1.5:61 --plot map.svg
   cylindroid map stewart --over x=-0.4:0.4:41 --over y=-0.4:0.4:41 --at z=1.1
   cylindroid map panda --over x=0:0.8:41 --over z=0:1:51 --free yaw
+  cylindroid map 3rrr --over x=-0.3:0.3:21 --over y=-0.3:0.3:21 --over rz=-0.6:0.6:21 --mesh locus.obj
 
 Components: x, y, z [m], roll, pitch, yaw [rad, R = Rz(yaw) Ry(pitch) Rx(roll)]; in the plane x, y, rz.";
 
@@ -72,14 +74,18 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "SEED", default_value_t = 0, allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
-    /// Leave out the curves
+    /// Leave out the curves and surfaces
     #[arg(long)]
     pub(crate) no_loci: bool,
 
     /// A .csv file with a row for each mode and cell that it reaches, or a .json file with the curves
-    /// as well
+    /// and surfaces as well
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+
+    /// An OBJ file with the surfaces of three axes, a group for each mode
+    #[arg(long, value_name = "FILE.obj", conflicts_with = "no_loci")]
+    pub(crate) mesh: Option<PathBuf>,
 
     /// Draw two axes as an SVG, a panel for each mode
     #[arg(long, value_name = "FILE.svg")]

@@ -25,10 +25,11 @@ pub(crate) fn check(axes: usize) -> Result<()> {
     if axes == 2 {
         return Ok(());
     }
+    let more = if axes == 3 { ", or write three axes with --mesh" } else { "" };
     Err(Error::InvalidOption {
         option: "--plot",
         value: format!("{axes} axes"),
-        reason: "a map of two axes can be drawn; name --over twice".to_owned(),
+        reason: format!("a map of two axes can be drawn; name --over twice{more}"),
     })
 }
 

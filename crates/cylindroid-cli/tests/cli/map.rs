@@ -161,3 +161,73 @@ fn what_is_wrong_is_named() {
     let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "y"]);
     assert!(message.contains("a name, = and a number"), "{message}");
 }
+
+const SPACE: [&str; 8] = [
+    "map",
+    "3rrr",
+    "--over",
+    "x=-0.31:0.29:7",
+    "--over",
+    "y=-0.29:0.33:7",
+    "--over",
+    "rz=-1.57:1.53:9",
+];
+
+/// Vertices and triangles of the file are those of the report, in groups of the modes.
+#[test]
+fn surfaces_of_three_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("locus.obj");
+    let mesh = ["--mesh", path.to_str().unwrap()];
+    let report = json(&[&SPACE[..], &mesh].concat(), 0);
+    let surfaces = report["surfaces"].as_array().unwrap();
+    assert!(!surfaces.is_empty() && report["loci"] == Value::Array(Vec::new()));
+    let file = fs::read_to_string(&path).unwrap();
+    assert!(file.contains("\n# v x [m], y [m], rz [rad]\n"), "{file:.300}");
+    let (mut vertices, mut faces, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+    for line in file.lines() {
+        let mut words = line.split(' ');
+        match words.next() {
+            Some("v") => vertices.push(words.map(|x| x.parse().unwrap()).collect::<Vec<f64>>()),
+            Some("f") => faces.push(words.map(|x| x.parse().unwrap()).collect::<Vec<usize>>()),
+            Some("g") => groups.push(line.to_owned()),
+            other => assert_eq!(other, Some("#")),
+        }
+    }
+    let (mut first, mut from, mut modes) = (0, 0, Vec::new());
+    for surface in surfaces {
+        let own = surface["vertices"].as_array().unwrap();
+        for (written, vertex) in vertices[first..].iter().zip(own) {
+            assert_eq!(*written, numbers(vertex));
+        }
+        let triangles = surface["triangles"].as_array().unwrap();
+        for (written, triangle) in faces[from..].iter().zip(triangles) {
+            let places: Vec<usize> =
+                numbers(triangle).iter().map(|v| first + 1 + *v as usize).collect();
+            assert_eq!(*written, places);
+        }
+        (first, from) = (first + own.len(), from + triangles.len());
+        modes.push(format!("g mode_{}", 1 + surface["mode"].as_u64().unwrap()));
+    }
+    modes.dedup();
+    assert_eq!((vertices.len(), faces.len(), groups), (first, from, modes));
+    let shown = text(&SPACE);
+    assert!(shown.contains("surfaces") && shown.contains("triangles"), "{shown}");
+    assert!(!text(&[&SPACE[..], &["--no-loci"]].concat()).contains("triangles"));
+}
+
+#[test]
+fn meshes_that_there_are_not() {
+    let message = refused(&[&OVER[..], &["--mesh", "locus.obj"]].concat());
+    assert!(message.contains("--mesh") && message.contains("--over three times"), "{message}");
+    let message = refused(&[&SPACE[..], &["--mesh", "locus.stl"]].concat());
+    assert!(message.contains("end in .obj"), "{message}");
+    let message = refused(&[&SPACE[..], &["--mesh", "locus.obj", "--no-loci"]].concat());
+    assert!(message.contains("--no-loci"), "{message}");
+    let message = refused(&[&SPACE[..], &["--plot", "map.svg"]].concat());
+    assert!(message.contains("two axes") && message.contains("--mesh"), "{message}");
+    let arm =
+        ["map", "panda", "--over", "x=0.4:0.5:2", "--over", "y=0:0.1:2", "--over", "z=0.4:0.5:2"];
+    let message = refused(&[&arm[..], &["--starts", "2", "--mesh", "locus.obj"]].concat());
+    assert!(message.contains("free motions") && message.contains("--at"), "{message}");
+}

@@ -110,7 +110,8 @@ _COLORS = {"type I": "tab:blue", "type II": "tab:red", "passive": "dimgray", "li
 def _mode(found: WorkspaceMap, mode: int, color: str | None, ax: Any, log: bool) -> Any:
     """One working mode of a map over two axes, and its loci."""
     if len(found.axes) != 2:
-        raise ValueError(f"the map has {len(found.axes)} axes; two can be drawn")
+        more = "; `surfaces` has triangles for plot_trisurf" if len(found.axes) == 3 else ""
+        raise ValueError(f"the map has {len(found.axes)} axes; two can be drawn{more}")
     if not 0 <= mode < len(found.modes):
         raise ValueError(f"mode is {mode}, the map has {len(found.modes)} modes, from 0 on")
     x, y = found.axes

@@ -40,8 +40,8 @@ pub struct WriteOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
     /// What is counted: "rows" of a sweep; of a map "starts" (random restarts that look for working
-    /// modes), then "cells" of the modes that are known so far, then "seeds" of curves; of a search
-    /// evaluated "designs".
+    /// modes), then "cells" of the modes that are known so far, then "seeds" of curves or "vertices" of
+    /// surfaces; of a search evaluated "designs".
     pub unit: &'static str,
     /// Rows of the sweep, or how many there are of what is counted.
     pub rows: u64,

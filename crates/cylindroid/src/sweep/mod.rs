@@ -63,8 +63,8 @@ pub use folder::{Progress, Summary, WriteOptions};
 pub use job::Sweep;
 pub use manifest::Part;
 pub use map::{
-    Hole, Locus, LocusKind, Map, MapOptions, Region, WorkingMode, Zone, ZoneBound, ZoneComponent,
-    ZoneOptions, ZoneShape,
+    Hole, Locus, LocusKind, Map, MapOptions, Region, Surface, WorkingMode, Zone, ZoneBound,
+    ZoneComponent, ZoneOptions, ZoneShape,
 };
 pub use optimise::{
     DesignObjective, OptimalDesign, Optimisation, OptimisationOptions, Optimum, Refinement, Sense,

@@ -16,6 +16,7 @@ mod robots;
 #[allow(dead_code)] // of the helpers, a few are needed here
 #[path = "../it/support.rs"]
 mod support;
+mod surfaces;
 mod threads;
 mod three_rps;
 mod zone;

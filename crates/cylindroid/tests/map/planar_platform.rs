@@ -7,11 +7,11 @@ use cylindroid::{Matrix, Vec3};
 use crate::five_bar::axis;
 use crate::robots::three_rpr;
 
-const BASE: [[f64; 2]; 3] = [[-1.0, -0.8], [1.2, -0.7], [0.1, 1.3]];
-const PLATFORM: [[f64; 2]; 3] = [[-0.4, -0.2], [0.5, -0.3], [0.1, 0.4]];
+pub(crate) const BASE: [[f64; 2]; 3] = [[-1.0, -0.8], [1.2, -0.7], [0.1, 1.3]];
+pub(crate) const PLATFORM: [[f64; 2]; 3] = [[-0.4, -0.2], [0.5, -0.3], [0.1, 0.4]];
 
 /// The determinant of the lines of the legs with the platform at (x, y), turned by an angle.
-fn determinant([x, y]: [f64; 2], turn: f64) -> f64 {
+pub(crate) fn determinant([x, y]: [f64; 2], turn: f64) -> f64 {
     let (s, c) = turn.sin_cos();
     let line = |i: usize| {
         let [bx, by] = PLATFORM[i];

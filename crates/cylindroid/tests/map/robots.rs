@@ -60,8 +60,23 @@ pub(crate) fn five_bar_at(world_from_ground: Pose, scale: f64) -> Mechanism {
 /// A planar platform on three legs of variable length between the base points and those of the
 /// platform, which is at the origin at home.
 pub(crate) fn three_rpr(base: [[f64; 2]; 3], platform: [[f64; 2]; 3], limits: &str) -> Mechanism {
+    three_rpr_at(base, platform, limits, (Pose::IDENTITY, 1.0))
+}
+
+/// The same at another place and of another size; the platform has the axes of the world there too.
+pub(crate) fn three_rpr_at(
+    base: [[f64; 2]; 3],
+    platform: [[f64; 2]; 3],
+    limits: &str,
+    (world_from_ground, scale): (Pose, f64),
+) -> Mechanism {
+    let at = |[x, y]: [f64; 2]| {
+        let p = world_from_ground * (Vec3::new(x, y, 0.0) * scale);
+        [p.x, p.y]
+    };
+    let [reference_x, reference_y] = at([0.0, 0.0]);
     let mut names = Vec::new();
-    for (i, ([ax, ay], [bx, by])) in base.into_iter().zip(platform).enumerate() {
+    for (i, ([ax, ay], [bx, by])) in base.map(at).into_iter().zip(platform.map(at)).enumerate() {
         let slide = format!("axis = [{:?}, {:?}]\nactuated = true\n{limits}", bx - ax, by - ay);
         let of = |what: &str| format!("{what}{i}");
         names.push((of("a"), "revolute", ["ground".to_owned(), of("cylinder")], [ax, ay], None));
@@ -74,7 +89,9 @@ pub(crate) fn three_rpr(base: [[f64; 2]; 3], platform: [[f64; 2]; 3], limits: &s
             ([name.as_str(), *kind], [a.as_str(), b], *origin, more.as_deref().unwrap_or(""))
         })
         .collect();
-    planar("reference = \"platform\"\nreference_point = [0, 0]", &joints)
+    let head =
+        format!("reference = \"platform\"\nreference_point = [{reference_x:?}, {reference_y:?}]");
+    planar(&head, &joints)
 }
 
 /// The place of a coordinate.

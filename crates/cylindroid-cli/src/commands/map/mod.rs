@@ -1,6 +1,7 @@
 //! `map`: workspace and singularity loci in the coordinates of the platform.
 
 mod file;
+mod mesh;
 mod report;
 
 use std::io::Write;
@@ -24,6 +25,9 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
     }
     if let Some(path) = &args.out {
         file::check(path)?;
+    }
+    if let Some(path) = &args.mesh {
+        mesh::check(path, args.over.len())?;
     }
     let frame = reference_or_tool(&robot, &args.frame)?;
     let at = args.at.iter().map(|at| (at.pair().0.to_owned(), Some(at.pair().1)));
@@ -55,6 +59,9 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
     }
     if let Some(path) = &args.out {
         file::write(&robot, &map, &report, path)?;
+    }
+    if let Some(path) = &args.mesh {
+        mesh::write(&robot, &map, path)?;
     }
     if interrupt.came() {
         return interrupted();
@@ -151,6 +158,7 @@ fn print(out: &mut dyn Write, report: &MapJson<'_>) -> anyhow::Result<()> {
             hole.cells
         )?;
     }
+    print_surfaces(out, report)?;
     if report.loci.is_empty() {
         return Ok(());
     }
@@ -180,6 +188,42 @@ fn print(out: &mut dyn Write, report: &MapJson<'_>) -> anyhow::Result<()> {
     }
     let rows = rows.into_iter().map(|(name, modes, counts)| {
         [name, modes].into_iter().chain(counts.map(|c| c.to_string())).collect::<Vec<_>>()
+    });
+    output::table(out, &columns, rows)?;
+    Ok(())
+}
+
+/// The surfaces by their kinds and modes.
+fn print_surfaces(out: &mut dyn Write, report: &MapJson<'_>) -> anyhow::Result<()> {
+    if report.surfaces.is_empty() {
+        return Ok(());
+    }
+    writeln!(out)?;
+    let columns = [
+        ("surfaces", Align::Left),
+        ("mode", Align::Left),
+        ("closed", Align::Right),
+        ("open", Align::Right),
+        ("vertices", Align::Right),
+        ("triangles", Align::Right),
+    ];
+    let mut rows: Vec<((&str, usize), [usize; 4])> = Vec::new();
+    for surface in &report.surfaces {
+        let of = (surface.kind, surface.mode);
+        let counts = [
+            usize::from(surface.closed),
+            usize::from(!surface.closed),
+            surface.vertices.len(),
+            surface.triangles.len(),
+        ];
+        match rows.iter_mut().find(|row| row.0 == of) {
+            Some(row) => row.1.iter_mut().zip(counts).for_each(|(a, b)| *a += b),
+            None => rows.push((of, counts)),
+        }
+    }
+    let rows = rows.into_iter().map(|((kind, mode), counts)| {
+        let names = [kind.to_owned(), (mode + 1).to_string()];
+        names.into_iter().chain(counts.map(|c| c.to_string())).collect::<Vec<_>>()
     });
     output::table(out, &columns, rows)?;
     Ok(())

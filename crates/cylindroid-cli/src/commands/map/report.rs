@@ -1,6 +1,6 @@
 //! The report of a map, as data.
 
-use cylindroid::sweep::{Hole, Locus, Map, Region};
+use cylindroid::sweep::{Hole, Locus, Map, Region, Surface};
 use cylindroid::{Mechanism, Result};
 use serde::Serialize;
 
@@ -27,6 +27,7 @@ pub(super) struct MapJson<'a> {
     pub(super) modes: Vec<ModeJson>,
     pub(super) joint_names: Vec<&'a str>,
     pub(super) loci: Vec<LocusJson<'a>>,
+    pub(super) surfaces: Vec<SurfaceJson<'a>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -92,6 +93,16 @@ pub(super) struct LocusJson<'a> {
     pub(super) q: &'a [Vec<f64>],
 }
 
+#[derive(Debug, Serialize)]
+pub(super) struct SurfaceJson<'a> {
+    pub(super) kind: &'static str,
+    pub(super) mode: usize,
+    pub(super) closed: bool,
+    pub(super) vertices: &'a [[f64; 3]],
+    pub(super) triangles: &'a [[usize; 3]],
+    pub(super) q: &'a [Vec<f64>],
+}
+
 /// The report of a map.
 pub(super) fn report<'a>(
     robot: &'a Mechanism,
@@ -121,6 +132,14 @@ pub(super) fn report<'a>(
         points: &locus.points,
         q: &locus.q,
     };
+    let surface = |surface: &'a Surface| SurfaceJson {
+        kind: surface.kind.name(),
+        mode: surface.mode,
+        closed: surface.closed,
+        vertices: &surface.vertices,
+        triangles: &surface.triangles,
+        q: &surface.q,
+    };
     Ok(MapJson {
         model: robot.name(),
         frame,
@@ -145,5 +164,6 @@ pub(super) fn report<'a>(
         modes: modes.collect::<Result<_>>()?,
         joint_names: output::joint_names(robot),
         loci: map.loci.iter().map(locus).collect(),
+        surfaces: map.surfaces.iter().map(surface).collect(),
     })
 }

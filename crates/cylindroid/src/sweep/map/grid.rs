@@ -21,6 +21,12 @@ impl Grid {
         self.counts.iter().product()
     }
 
+    /// The numbers of cells along three axes with several values each.
+    pub(super) fn spatial(&self) -> Option<[usize; 3]> {
+        let counts: [usize; 3] = self.counts[..].try_into().ok()?;
+        counts.iter().all(|count| *count > 1).then_some(counts)
+    }
+
     /// The places of a cell along the axes.
     fn places(&self, mut cell: usize) -> Vec<usize> {
         let mut places = vec![0; self.counts.len()];

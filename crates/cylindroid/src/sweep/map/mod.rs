@@ -2,9 +2,9 @@
 //! the loci of its singularities.
 //!
 //! Read in this order: `options`, `problem` (what is prescribed, what is singular), `grid`, `flood`
-//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves), `region` (sizes and
-//! holes). `zone` is the largest
-//! ball or box around a configuration without singularities, found by `zone_search` with `zone_rays`.
+//! (one working mode from cell to cell), `modes` (all of them), `loci` (curves over two axes), `surfaces`
+//! with `tetrahedra` (triangles over three), `region` (sizes and holes). `zone` is the largest ball or box
+//! around a configuration without singularities, found by `zone_search` with `zone_rays`.
 //!
 //! ```
 //! use cylindroid::sweep::{Axis, LocusKind, Map, MapOptions};
@@ -19,8 +19,8 @@
 //! # Ok::<(), cylindroid::Error>(())
 //! ```
 //!
-//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/options.rs,
-//!          tests/map/threads.rs
+//! Checked  tests/map/five_bar.rs, tests/map/planar_platform.rs, tests/map/surfaces.rs,
+//!          tests/map/options.rs, tests/map/threads.rs
 
 mod flood;
 mod grid;
@@ -30,13 +30,15 @@ mod options;
 mod problem;
 mod region;
 mod result;
+mod surfaces;
+mod tetrahedra;
 mod zone;
 mod zone_rays;
 mod zone_search;
 
 pub use options::MapOptions;
 pub use region::{Hole, Region};
-pub use result::{Locus, LocusKind, WorkingMode};
+pub use result::{Locus, LocusKind, Surface, WorkingMode};
 pub use zone::{Zone, ZoneBound, ZoneComponent, ZoneOptions, ZoneShape};
 
 use std::num::NonZeroUsize;
@@ -69,6 +71,8 @@ pub struct Map {
     pub modes: Vec<WorkingMode>,
     /// Curves of singularities and of limits, for two axes.
     pub loci: Vec<Locus>,
+    /// Surfaces of singularities of type II, for three axes.
+    pub surfaces: Vec<Surface>,
     grid_cells: usize,
 }
 
@@ -137,15 +141,16 @@ impl Map {
         let grid = Grid::new(&options.axes);
         let modes = modes::modes(&problem, &grid, &options, workers)?;
         let free_motions = problem.free_motions();
-        let curves = options.loci
+        let wanted = options.loci
             && workers.goes_on()
             && free_motions == 0
-            && options.axes.len() == 2
             && options.axes.iter().all(|axis| axis.count > 1);
-        let loci = if curves {
-            loci::loci(&problem, &grid, &options.axes, &modes, workers)?
-        } else {
-            Vec::new()
+        let (loci, surfaces) = match options.axes.len() {
+            2 if wanted => {
+                (loci::loci(&problem, &grid, &options.axes, &modes, workers)?, Vec::new())
+            }
+            3 if wanted => (Vec::new(), surfaces::surfaces(&problem, &grid, &modes, workers)?),
+            _ => (Vec::new(), Vec::new()),
         };
         let name = |i: usize| {
             let named = problem.components.iter().find(|(_, place)| *place == i);
@@ -157,6 +162,7 @@ impl Map {
             signed: [problem.type_one.is_signed(), problem.type_two.is_signed()],
             modes: modes.into_iter().map(|mode| working_mode(mechanism, mode)).collect(),
             loci,
+            surfaces,
             axes: options.axes,
             grid_cells: cells,
         })

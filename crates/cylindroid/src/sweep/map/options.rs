@@ -30,7 +30,8 @@ pub struct MapOptions {
     pub starts: usize,
     /// Selects other random restarts.
     pub seed: u64,
-    /// Follow the singularity loci and the boundaries of limits; for two axes.
+    /// Follow the singularity loci and the boundaries of limits as curves, for two axes, or find those of
+    /// type II as surfaces, for three.
     pub loci: bool,
 }
 

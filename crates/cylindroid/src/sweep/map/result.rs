@@ -1,6 +1,6 @@
 //! The parts of a map: working modes and loci.
 //!
-//! Checked  tests/map/five_bar.rs, tests/map/options.rs
+//! Checked  tests/map/five_bar.rs, tests/map/options.rs, tests/map/surfaces.rs
 
 use super::flood::Flooded;
 use crate::model::Mechanism;
@@ -74,6 +74,25 @@ pub struct Locus {
     /// The values of the axes at its points.
     pub points: Vec<Vec<f64>>,
     /// The configurations there [rad or m].
+    pub q: Vec<Vec<f64>>,
+}
+
+/// A surface of singular configurations of one mode, as triangles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// What happens there, at a vertex in its middle: [`LocusKind::TypeTwo`] or
+    /// [`LocusKind::Passive`].
+    pub kind: LocusKind,
+    /// The mode that it belongs to.
+    pub mode: usize,
+    /// True if each side of a triangle is one of another: otherwise it ends with the grid or the mode.
+    pub closed: bool,
+    /// The values of the axes at its vertices [m or rad].
+    pub vertices: Vec<[f64; 3]>,
+    /// Three vertices each, counterclockwise as seen from where the distance of type II is positive, with
+    /// the axes in their order as x, y and z.
+    pub triangles: Vec<[usize; 3]>,
+    /// The configurations at the vertices [rad or m].
     pub q: Vec<Vec<f64>>,
 }
 
