@@ -116,7 +116,7 @@ impl PySweepPlan {
         metric = "unit", length = None, vary = None, designs = 0, columns = Vec::new(),
         direction = None, reach = None, directions = VoxelGrid::DIRECTIONS,
         rolls = VoxelGrid::ROLLS, reach_from = None, poses = None,
-        collision = None))]
+        collision = None, relative_to = None))]
     #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
     fn new(
         #[pyo3(from_py_with = argument)] mechanism: PyRef<'_, PyMechanism>,
@@ -141,6 +141,7 @@ impl PySweepPlan {
         reach_from: Option<Numbers<'_>>,
         poses: Option<Bound<'_, PyAny>>,
         #[pyo3(from_py_with = argument)] collision: Option<PyRef<'_, PyCollisionModel>>,
+        #[pyo3(from_py_with = argument)] relative_to: Option<&str>,
     ) -> Result<Self> {
         let robot = &*mechanism;
         let mechanism = robot.inner.clone();
@@ -183,6 +184,7 @@ impl PySweepPlan {
         let chosen = frame.is_some() || tool.is_some();
         let end_effector =
             if chosen { Some(robot.end_effector(frame, tool.as_ref())?) } else { None };
+        let relative_to = relative_to.map(|name| mechanism.frame(name)).transpose()?;
         let own = OwnColumns::new(columns);
         let part_rows = Sweep::usual_part_rows(&mechanism, &source, space.is_some());
         let options = SweepOptions {
@@ -190,6 +192,7 @@ impl PySweepPlan {
             quantities,
             columns: own.columns(&mechanism),
             end_effector,
+            relative_to,
             task,
             metric: VelocityMetric::named(metric)?,
             length,

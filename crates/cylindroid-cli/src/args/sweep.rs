@@ -47,6 +47,7 @@ Examples:
   cylindroid sweep ur5e --reach x=-1:1:21 --reach z=-0.5:1:16 --plot reach.svg
   cylindroid sweep panda --samples 1e4 --quantities pose,yoshikawa --plot cloud.svg
   cylindroid sweep docs/cell.toml --samples 1e4 --quantities self_distance
+  cylindroid sweep docs/two-arms.toml --samples 1e4 --frame left/hand_tcp --relative-to right/hand_tcp
 
 Quantities:
   pose                     position and unit quaternion of the frame
@@ -63,6 +64,7 @@ Quantities:
   measures                 mobility, distances to singularities, kinematic efficiencies, in --metric
 
 For closed chains: pose, limit_distance, self_distance, obstacle_distance, payload and measures. \
+With --relative-to: all but payload and measures. \
 For --reach: yoshikawa, smallest_singular_value, condition, limit_distance, self_distance, \
 obstacle_distance and payload. Exit code 130 after an \
 interrupt.";
@@ -144,8 +146,14 @@ pub(crate) struct SweepArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
+    /// The frame from which --frame is seen, which may move: two arms together. Poses, Jacobians,
+    /// their measures and the screw system are relative to it, in its axes
+    #[arg(long, value_name = "FRAME", conflicts_with_all = ["poses", "reach"])]
+    pub(crate) relative_to: Option<String>,
+
     /// The components that count, of the twist for measures and those of the Jacobian, of the pose for
-    /// --poses: pose, position, orientation, or a list of x,y,z,rx,ry,rz, in world axes; of poses
+    /// --poses: pose, position, orientation, or a list of x,y,z,rx,ry,rz, in world axes or those of
+    /// --relative-to; of poses
     /// without measures also pointing [default: pose]
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Option<String>,

@@ -9,7 +9,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use crate::distance::CELL;
-use crate::{json, refused, text};
+use crate::{json, numbers, refused, text};
 
 /// A column of statistics.
 fn column<'a>(report: &'a Value, name: &str) -> &'a Value {
@@ -338,3 +338,72 @@ fn distances_to_obstacles() {
     assert!(with(&["pose", "--meshes", "convex_hull"]).contains("self_distance"));
     assert!(with(&["obstacle_distance"]).contains("no obstacle"));
 }
+
+    // Designs have their own shapes, and no obstacles.
+    let designs = ["sweep", DESIGNS, "--over", "crank=0.4:0.5:2", "--quantities"];
+    let of_designs = |extra: &[&str]| refused(&[&designs[..], extra].concat());
+    let shapes = "each design has the shapes of its own links";
+    let ball = ["obstacle_distance", "--obstacle", "ball=sphere:0.1@0,0,5"];
+    assert!(of_designs(&ball).contains(shapes));
+    let meshes = ["self_distance", "--meshes", "convex_hull"];
+    assert!(of_designs(&meshes).contains(shapes));
+    assert!(of_designs(&["obstacle_distance"]).contains("designs have no obstacles"));
+    let bare = of_designs(&["self_distance"]);
+    assert!(bare.contains("self_distance") && bare.contains("collision shape"), "{bare}");
+}
+
+const TWO_ARMS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/two-arms.toml");
+
+/// One hand as seen from the other: the columns of `jacobian --relative-to`, in statistics, folders and
+/// the table, and what has no other frame.
+#[test]
+fn two_arms_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    let seen = ["--frame", "left/hand_tcp", "--relative-to", "right/hand_tcp"];
+    let at_home = ["sweep", TWO_ARMS, "--over", "torso=0:1:2", "--quantities"];
+    let with = |more: &[&str]| -> Vec<String> {
+        [&at_home[..], more, &seen].concat().into_iter().map(str::to_owned).collect()
+    };
+    let json_with =
+        |more: &[&str]| json(&with(more).iter().map(String::as_str).collect::<Vec<_>>(), 0);
+    let text_with =
+        |more: &[&str]| text(&with(more).iter().map(String::as_str).collect::<Vec<_>>());
+    let report = json_with(&["pose,jacobian,singular_values,yoshikawa"]);
+    assert_eq!(report["frame"], "left/hand_tcp");
+    assert_eq!(report["relative_to"], "right/hand_tcp");
+    let single = json(&[&["jacobian", TWO_ARMS][..], &seen].concat(), 0);
+    let values = numbers(&single["singular_values"]);
+    for (i, value) in values.iter().enumerate() {
+        let own = column(&report, &format!("singular_value_{}", i + 1));
+        for entry in ["smallest", "largest"] {
+            let x = own[entry].as_f64().unwrap();
+            assert!((x - value).abs() < 1e-12 * values[0], "{i}: {x} for {value}");
+        }
+    }
+    for (row, name) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().enumerate() {
+        let matrix = numbers(&single["matrix"][row]);
+        for (joint, x) in single["joint_names"].as_array().unwrap().iter().zip(matrix) {
+            let own = column(&report, &format!("jacobian_{name}_{}", joint.as_str().unwrap()));
+            assert!((own["smallest"].as_f64().unwrap() - x).abs() < 1e-12);
+        }
+    }
+    assert!(column(&report, "x")["description"].as_str().unwrap().contains("relative_to"));
+    let shown = text_with(&["pose"]);
+    assert!(shown.contains("relative to     right/hand_tcp"), "{shown}");
+    let out = ["pose", "--out", own.to_str().unwrap()];
+    text_with(&out);
+    assert_eq!(manifest(&own)["recipe"]["relative_to"], "right/hand_tcp");
+    let other = [&at_home[..], &out, &seen[..2], &["--resume", "--relative-to", "chest"]].concat();
+    let other = refused(&other);
+    assert!(other.contains(r#"relative_to is "right/hand_tcp" there and "chest" now"#), "{other}");
+    let refused =
+        |more: &[&str]| crate::refused(&with(more).iter().map(String::as_str).collect::<Vec<_>>());
+    let measures = refused(&["measures"]);
+    assert!(measures.contains("--relative-to") && measures.contains("measures"), "{measures}");
+    assert!(refused(&["payload"]).contains("payload"));
+    let unknown =
+        crate::refused(&[&at_home[..], &["pose", "--relative-to", "right/hand"]].concat());
+    assert!(unknown.contains("right/hand_tcp"), "{unknown}");
+    let map = ["sweep", TWO_ARMS, "--reach", "x=0:1:2", "--relative-to", "chest"];
+    assert!(crate::refused(&map).contains("--relative-to"));

@@ -85,6 +85,7 @@ def sweep(
     reach_from: ArrayLike | None = None,
     poses: Any = None,
     collision: CollisionModel | None = None,
+    relative_to: str | None = None,
 ) -> Any:
     """Quantities of many configurations: samples within the limits, a grid, configurations, or those that
     reach poses; or of the points of a capability map.
@@ -178,6 +179,11 @@ def sweep(
         Of this mechanism: the shapes, pairs and obstacles of 'self_distance' and 'obstacle_distance',
         the smallest distances [m], negative in penetration. It is not pickled, so that it goes to
         threads alone. Default: the shapes of the links, without obstacles.
+    relative_to : str, optional
+        The frame from which `frame` is seen, one of `frames`, which may move: two arms together. Poses
+        are `relative_to_from_frame`, Jacobians those of `Mechanism.relative_jacobian`, at the frame's
+        origin in the axes of `relative_to`, and so are their measures, the screw system and `task`. Not
+        of 'payload', 'measures', `reach` and `poses`. Default: the world.
 
     Returns
     -------
@@ -229,6 +235,12 @@ def sweep(
     >>> found["reachability"]
     array([1., 1., 0.])
 
+    One hand as seen from a link that moves:
+
+    >>> found = cy.sweep(panda, samples=3, quantities=["jacobian"], relative_to="link4")
+    >>> found["jacobian_vx_panda_joint1"]
+    array([0., 0., 0.])
+
     Which of two poses are reached:
 
     >>> poses = [arm.fk(arm.home), arm.fk(arm.home)]
@@ -260,6 +272,7 @@ def sweep(
         "reach_from": reach_from,
         "poses": poses,
         "collision": collision,
+        "relative_to": relative_to,
     }
     plan = SweepPlan(**arguments)
     if not isinstance(resume, (bool, np.bool_)):

@@ -24,7 +24,7 @@ use super::table::{Column, Values};
 use crate::closure::ParametricModel;
 use crate::collision::{CollisionModel, CollisionOptions};
 use crate::error::{Error, Result};
-use crate::model::Mechanism;
+use crate::model::{FrameId, Mechanism};
 use crate::tolerance::MAX_MAGNITUDE;
 
 /// The column of designs that have a mechanism.
@@ -254,14 +254,16 @@ impl Designs {
             });
         }
         let mut options = self.options.clone();
+        // A reference point may coincide with a link in one design and not in another.
+        let of_design = |frame: FrameId| match frame {
+            frame if frame == nominal.reference() => Ok(own.reference()),
+            frame if frame == nominal.tool() => Ok(own.tool()),
+            frame => own.frame(&nominal.frame_of(frame).name),
+        };
         if let Some(end_effector) = &mut options.end_effector {
-            // A reference point may coincide with a link in one design and not in another.
-            end_effector.frame = match end_effector.frame {
-                frame if frame == nominal.reference() => own.reference(),
-                frame if frame == nominal.tool() => own.tool(),
-                frame => own.frame(&nominal.frame_of(frame).name)?,
-            };
+            end_effector.frame = of_design(end_effector.frame)?;
         }
+        options.relative_to = options.relative_to.map(of_design).transpose()?;
         options.collision = match &self.collision {
             Some(nominal) => Some(nominal.of_design(&own)?),
             None => None,

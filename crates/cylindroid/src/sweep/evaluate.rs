@@ -11,18 +11,19 @@ use std::slice::IterMut;
 use super::capability::{Search, Voxels};
 use super::clearances::Clearances;
 use super::columns::append;
+use super::measures::{measures, velocity_limits};
 use super::options::{SweepOptions, VelocityMetric};
 use super::payload::Payload;
 use super::poses::{self, POSE};
 use super::quantity::{PITCHES, Quantity};
+use super::relative::Relative;
 use super::singular_values::SingularValues;
 use super::source::{Configurations, Source};
 use super::table::{Column, Values, begin};
-use crate::closure::ClosedChain;
 use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, KinematicsBatch, ReferenceFrame};
 use crate::linalg::Matrix;
-use crate::manipulability::{BatchOptions, ManipulabilityBatch, Metrics};
+use crate::manipulability::ManipulabilityBatch;
 use crate::model::{Dimension, Mechanism};
 use crate::screws::{ScrewOptions, ScrewSystem};
 use crate::task::Task;
@@ -40,6 +41,8 @@ pub(super) struct Evaluator {
     pub(super) task: Vec<usize>,
     pub(super) length: f64,
     kinematics: KinematicsBatch,
+    /// In place of them, of a frame seen from another.
+    pub(super) relative: Option<Relative>,
     /// Of the Jacobian with linear rows over the length.
     scaled: SingularValues,
     yoshikawa: Volume,
@@ -63,6 +66,7 @@ impl Evaluator {
     pub(super) fn new(mechanism: &Mechanism, options: &SweepOptions) -> Result<Self> {
         let wants = |quantity| options.quantities.contains(&quantity);
         let (end_effector, length) = options.place(mechanism)?;
+        let relative = Relative::new(mechanism, options, end_effector)?;
         if mechanism.is_closed()
             && let Some(quantity) = options.quantities.iter().find(|q| !q.has_loops())
         {
@@ -111,6 +115,7 @@ impl Evaluator {
             task,
             length,
             kinematics: KinematicsBatch::new(mechanism, end_effector)?,
+            relative,
             scaled,
             yoshikawa,
             payload,
@@ -185,22 +190,18 @@ impl Evaluator {
         let (n, count, k) = (self.mechanism.n(), s.count, self.values());
         let q = &s.q[..count * n];
         let poses = s.poses.get_mut(..count * POSE).unwrap_or_default();
-        let jacobians = &mut s.jacobians[..];
+        let jacobians = s.jacobians.get_mut(..count * 6 * n).unwrap_or_default();
         let reference = ReferenceFrame::LocalWorldAligned;
-        let jacobians: &[f64] = if jacobians.is_empty() {
-            if !poses.is_empty() {
-                self.kinematics.poses_into(q, poses)?;
-            }
-            &[]
-        } else {
-            let jacobians = &mut jacobians[..count * 6 * n];
-            if poses.is_empty() {
-                self.kinematics.jacobians_into(q, reference, jacobians)?;
-            } else {
+        match (&mut s.relative, poses.is_empty(), jacobians.is_empty()) {
+            (_, true, true) => {}
+            (Some(relative), ..) => relative.run(q, poses, jacobians)?,
+            (None, false, true) => self.kinematics.poses_into(q, poses)?,
+            (None, true, false) => self.kinematics.jacobians_into(q, reference, jacobians)?,
+            (None, false, false) => {
                 self.kinematics.poses_and_jacobians_into(q, reference, poses, jacobians)?;
             }
-            jacobians
-        };
+        }
+        let jacobians: &[f64] = jacobians;
         let mut scaled = &mut s.scaled[..];
         if !scaled.is_empty() {
             scaled = &mut scaled[..count * k];
@@ -327,6 +328,7 @@ pub(super) struct Scratch {
     poses: Vec<f64>,
     jacobians: Vec<f64>,
     scaled: Vec<f64>,
+    relative: Option<Relative>,
     clearances: Option<Clearances>,
 }
 
@@ -347,6 +349,7 @@ impl Scratch {
             poses: size(e.wants(&[Q::Pose]), POSE),
             jacobians: size(jacobians, 6 * n),
             scaled: size(scaled, e.values()),
+            relative: e.relative.clone(),
             clearances: e.clearances.clone(),
         }
     }
@@ -398,19 +401,6 @@ fn components(mechanism: &Mechanism, task: Option<Task>) -> Result<Vec<usize>> {
     Ok(rows)
 }
 
-/// Velocity limits of the actuated joints, which a metric of limits needs.
-fn velocity_limits(mechanism: &Mechanism, names: &[String]) -> Result<Vec<f64>> {
-    let limit = |name: &String| {
-        let limit = mechanism.limits_of(name).map(|l| l.velocity);
-        limit.filter(|l| l.is_finite() && *l > 0.0).ok_or_else(|| Error::InvalidOption {
-            option: "metric",
-            value: "limits".to_owned(),
-            reason: format!("joint '{name}' has no velocity limit; give it one, or use 'length'"),
-        })
-    };
-    names.iter().map(limit).collect()
-}
-
 fn volume(
     mechanism: &Mechanism,
     metric: VelocityMetric,
@@ -438,44 +428,6 @@ fn volume(
         return Ok(Volume::Factor(ratios.product()));
     }
     Ok(Volume::Own(SingularValues::new(rows, columns)))
-}
-
-fn measures(
-    mechanism: &Mechanism,
-    options: &SweepOptions,
-    (end_effector, task): (EndEffector, &[usize]),
-    length: f64,
-) -> Result<ManipulabilityBatch> {
-    let refuse = |option: &'static str, value: String, reason: &str| {
-        Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
-    };
-    if end_effector.frame_from_tool != crate::spatial::Pose::IDENTITY {
-        let reason = "measures are those of a frame of the model; define one at this point";
-        return refuse("tool", String::new(), reason);
-    }
-    let home = mechanism.state(mechanism.home())?;
-    let chain = ClosedChain::of(&home, Some(end_effector.frame), Some(length))?;
-    let mut metrics = match options.metric {
-        VelocityMetric::Unit => Metrics::UNIT,
-        _ => Metrics::characteristic_length(&chain.units, length)?,
-    };
-    if options.metric == VelocityMetric::Limits {
-        metrics = metrics.with_velocity_limits(&velocity_limits(mechanism, &chain.actuated)?)?;
-    }
-    let task = options.task.map(|_| task_map(task, mechanism.dimension().components()));
-    // The unit metric of a task is that of its own numbers.
-    if let (Some(map), true) = (&task, options.metric != VelocityMetric::Unit) {
-        metrics = metrics.for_task(map)?;
-    }
-    let reference = Some(end_effector.frame);
-    let options = BatchOptions { reference, length: Some(length), metrics, task, generic: None };
-    ManipulabilityBatch::new(mechanism, &options)
-}
-
-/// Components of the twist `all`, three in the plane, as a map.
-fn task_map(components: &[usize], all: &[usize]) -> Matrix {
-    let entry = |i: usize, j: usize| f64::from(u8::from(components[i] == all[j]));
-    Matrix::from_fn(components.len(), all.len(), entry)
 }
 
 /// The row of an error within a block.

@@ -16,7 +16,7 @@ use super::table::{Column, Table, Values};
 use crate::closure::ParametricModel;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
-use crate::model::{Coordinate, Mechanism};
+use crate::model::{Coordinate, FrameId, Mechanism};
 use crate::task::Task;
 
 /// Parts at most: the manifest lists all of them.
@@ -72,7 +72,8 @@ impl Sweep {
     /// that no link has or of another mechanism, obstacles that are missing, own columns without a name
     /// or with that of another column; of a capability map own columns, quantities that are no
     /// index, and orientations that too few joints reach; of poses components that inverse kinematics
-    /// does not take, and poses that are not finite.
+    /// does not take, and poses that are not finite; relative to a frame payloads, measures, poses and
+    /// capability maps.
     pub fn new(mechanism: &Mechanism, options: SweepOptions) -> Result<Self> {
         let refuse = |option: &'static str, value: String, reason: &str| {
             Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
@@ -106,7 +107,8 @@ impl Sweep {
                 ));
             }
             for quantity in &options.quantities {
-                columns.extend(quantity.columns(mechanism, evaluator.values()));
+                let is_relative = evaluator.relative.is_some();
+                columns.extend(quantity.columns(mechanism, evaluator.values(), is_relative));
             }
         }
         check_names(&columns)?;
@@ -194,6 +196,12 @@ impl Sweep {
     #[must_use]
     pub const fn end_effector(&self) -> EndEffector {
         self.evaluator.end_effector
+    }
+
+    /// The frame from which that one is seen; `None`: the world.
+    #[must_use]
+    pub fn relative_to(&self) -> Option<FrameId> {
+        self.evaluator.relative.as_ref().map(|relative| relative.base)
     }
 
     /// The quantities, in the order of their columns.

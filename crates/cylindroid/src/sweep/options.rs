@@ -1,6 +1,7 @@
 //! The options of a sweep.
 //!
-//! Checked  tests/sweep/quantities.rs, tests/sweep/pose_files.rs, tests/sweep/clearances.rs
+//! Checked  tests/sweep/quantities.rs, tests/sweep/pose_files.rs, tests/sweep/clearances.rs,
+//!          tests/sweep/relative.rs
 
 use super::own_columns::OwnColumn;
 use super::quantity::Quantity;
@@ -8,7 +9,7 @@ use super::source::Source;
 use crate::collision::CollisionModel;
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
-use crate::model::Mechanism;
+use crate::model::{FrameId, Mechanism};
 use crate::spatial::Vec3;
 use crate::task::Task;
 
@@ -26,8 +27,12 @@ pub struct SweepOptions {
     pub columns: Vec<OwnColumn>,
     /// The frame: the reference of a closed chain, otherwise the tool, by default.
     pub end_effector: Option<EndEffector>,
-    /// The components of the twist that the Jacobian's measures see, in world axes; in the plane
-    /// those of the plane. All by default.
+    /// The frame from which `end_effector` is seen, which may move: two arms together. Poses are those
+    /// relative to it, and Jacobians those of
+    /// [`State::relative_jacobian`](crate::kinematics::State::relative_jacobian); the world by default.
+    pub relative_to: Option<FrameId>,
+    /// The components of the twist that the Jacobian's measures see, in world axes or those of
+    /// `relative_to`; in the plane those of the plane. All by default.
     pub task: Option<Task>,
     /// The metric of [`Quantity::Yoshikawa`] and [`Quantity::Measures`].
     pub metric: VelocityMetric,
@@ -68,6 +73,7 @@ impl Default for SweepOptions {
             quantities: vec![Quantity::Pose, Quantity::Yoshikawa],
             columns: Vec::new(),
             end_effector: None,
+            relative_to: None,
             task: None,
             metric: VelocityMetric::Unit,
             length: None,

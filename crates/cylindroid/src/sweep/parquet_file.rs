@@ -3,7 +3,8 @@
 //! Shapes   one row group; columns without dictionary, compression and statistics: random numbers
 //!          do not compress, and a page is then a copy. Names are stored by dictionary
 //! Units    in the metadata `cylindroid` of the file: a JSON object with the model, the frame, its tool
-//!          point, the characteristic length [m], and name, unit and description of each column
+//!          point, the frame from which it is seen unless that is the world (relative_to), the
+//!          characteristic length [m], and name, unit and description of each column
 //! Checked  tests/sweep/folder.rs
 
 use std::fs::File;
@@ -139,6 +140,9 @@ fn into<W: Write + Send>(
     let mut about = json!({ "columns": described.collect::<Vec<_>>() });
     for entry in ["model", "frame", "frame_from_tool", "length"] {
         about[entry] = recipe.0[entry].clone();
+    }
+    if let Some(base) = recipe.0.get("relative_to") {
+        about["relative_to"] = base.clone();
     }
     let mut properties = WriterProperties::builder()
         .set_created_by(concat!("cylindroid ", env!("CARGO_PKG_VERSION")).to_owned())

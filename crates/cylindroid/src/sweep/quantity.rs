@@ -1,8 +1,9 @@
 //! The quantities of a sweep and their columns.
 //!
 //! Units    of each column with it; a column of both metres and radians says so
-//! Frame    poses `world_from_frame`, Jacobians at the frame's origin in world axes
-//! Checked  tests/sweep/quantities.rs
+//! Frame    poses `world_from_frame`, Jacobians at the frame's origin in world axes; of a sweep relative
+//!          to another frame, poses and axes are those seen from it
+//! Checked  tests/sweep/quantities.rs, tests/sweep/relative.rs
 
 use super::table::Column;
 use crate::error::{Error, Result};
@@ -105,6 +106,24 @@ impl Quantity {
         }
     }
 
+    /// One phrase, of a sweep relative to another frame.
+    const fn relative_description(self) -> &'static str {
+        match self {
+            Self::Pose => "position and unit quaternion of the frame, relative_to_from_frame",
+            Self::Jacobian => {
+                "relative Jacobian at the frame's origin, axes of relative_to, linear rows first"
+            }
+            Self::SingularValues => {
+                "singular values of the relative Jacobian, linear rows over the characteristic length"
+            }
+            Self::Yoshikawa => "Yoshikawa's measure sqrt(det J J^T) of the relative Jacobian",
+            Self::GibsonHunt => {
+                "Gibson-Hunt class and principal pitches of the relative screw system"
+            }
+            other => other.description(),
+        }
+    }
+
     /// Those that are computed where none are named: what a closed chain has, and what else others
     /// have.
     #[must_use]
@@ -149,14 +168,26 @@ impl Quantity {
             || matches!(self, Self::Pose | Self::LimitDistance | Self::Payload | Self::Measures)
     }
 
+    /// True if it is the same for all frames, or can be that of a frame seen from another.
+    pub(super) const fn is_relative(self) -> bool {
+        !matches!(self, Self::Payload | Self::Measures)
+    }
+
     /// True if it is a distance of collision shapes.
     pub(super) const fn sees_collisions(self) -> bool {
         matches!(self, Self::SelfDistance | Self::ObstacleDistance)
     }
 
     /// Its columns; `values`: number of singular values.
-    pub(super) fn columns(self, mechanism: &Mechanism, values: usize) -> Vec<Column> {
-        let number = |name: &str, unit| Column::number(name, unit, self.description());
+    pub(super) fn columns(
+        self,
+        mechanism: &Mechanism,
+        values: usize,
+        is_relative: bool,
+    ) -> Vec<Column> {
+        let description =
+            if is_relative { self.relative_description() } else { self.description() };
+        let number = |name: &str, unit| Column::number(name, unit, description);
         match self {
             Self::Pose => {
                 let position = ["x", "y", "z"].map(|name| number(name, "m"));
@@ -188,7 +219,7 @@ impl Quantity {
             Self::SelfDistance | Self::ObstacleDistance => vec![number(self.name(), "m")],
             Self::Payload => vec![number(self.name(), "N")],
             Self::GibsonHunt => {
-                let class = Column::text(self.name(), self.description());
+                let class = Column::text(self.name(), description);
                 let pitch = |i| number(&format!("principal_pitch_{i}"), "m/rad");
                 std::iter::once(class).chain((1..=PITCHES).map(pitch)).collect()
             }
@@ -199,7 +230,7 @@ impl Quantity {
                         "closure_distance" => number(name, "m"),
                         "closure_angle" => number(name, "rad"),
                         name if ManipulabilityBatch::COUNTS.contains(&i) => {
-                            Column::count(name, self.description())
+                            Column::count(name, description)
                         }
                         "volume" | "largest" | "smallest" => number(name, "of the metric"),
                         _ => number(name, "1"),

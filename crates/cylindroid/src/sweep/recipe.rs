@@ -57,6 +57,9 @@ impl Recipe {
             "metric": options.metric.name(),
             "length": evaluator.length,
         }));
+        if let Some(base) = options.relative_to {
+            recipe.0["relative_to"] = json!(mechanism.frame_of(base).name);
+        }
         if options.quantities.contains(&Quantity::Payload) {
             recipe.0["direction"] = json!(options.direction.to_array());
         }

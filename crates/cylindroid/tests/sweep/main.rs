@@ -21,6 +21,7 @@ mod payload;
 mod pinocchio;
 mod pose_files;
 mod quantities;
+mod relative;
 mod sampling;
 mod shared_folder;
 

@@ -36,6 +36,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     let space = designs(parameters.clone(), args)?;
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
+    let base = args.relative_to.as_deref();
     let is_map = matches!(source, Source::Voxels(_));
     let quantities = if args.quantities.is_empty() {
         if is_map { Vec::new() } else { Quantity::usual(&robot).to_vec() }
@@ -50,6 +51,7 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         quantities,
         columns: Vec::new(),
         end_effector: frame,
+        relative_to: base.map(|name| robot.frame(name)).transpose()?,
         task,
         metric: args.metric.metric(),
         length: args.length,

@@ -16,6 +16,8 @@ use crate::output::{self, Align, number};
 pub(super) struct Head<'a> {
     model: &'a str,
     frame: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    relative_to: Option<&'a str>,
     rows: u64,
     /// In words.
     configurations: String,
@@ -45,6 +47,7 @@ impl<'a> Head<'a> {
         Self {
             model: robot.name(),
             frame: &robot.frame_of(sweep.end_effector().frame).name,
+            relative_to: sweep.relative_to().map(|base| robot.frame_of(base).name.as_str()),
             rows: all,
             configurations,
             quantities: sweep.quantities().iter().map(|q| q.name()).collect(),
@@ -146,6 +149,7 @@ impl Outcome<'_> {
             ("model", head.model.to_owned()),
             ("configurations", head.configurations.clone()),
             ("frame", head.frame.to_owned()),
+            ("relative to", head.relative_to.unwrap_or_default().to_owned()),
             ("quantities", head.quantities.join(", ")),
             ("task", if head.task_named { head.task.join(", ") } else { String::new() }),
             ("metric", if head.metric == "unit" { "" } else { head.metric }.to_owned()),

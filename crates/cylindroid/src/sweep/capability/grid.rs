@@ -214,7 +214,7 @@ pub(in super::super) fn columns(
                         .to_owned(),
             });
         }
-        for column in quantity.columns(mechanism, 1) {
+        for column in quantity.columns(mechanism, 1, false) {
             let name = format!("best_{}", column.name);
             let description = match quantity {
                 Quantity::Condition => "smallest over the solutions found, NaN without one",

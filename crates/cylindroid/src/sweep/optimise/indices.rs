@@ -300,7 +300,7 @@ fn quantity_of(nominal: &Mechanism, of_poses: bool, index: &str) -> Result<Optio
         .into_iter()
         .filter(|q| *q != Quantity::ObstacleDistance && (!nominal.is_closed() || q.has_loops()));
     // More singular values than there are have no column in the end.
-    let columns = |q: Quantity| q.columns(nominal, 6);
+    let columns = |q: Quantity| q.columns(nominal, 6, false);
     let mut names: Vec<String> = Vec::new();
     for quantity in possible {
         for Column { name, kind, .. } in columns(quantity) {

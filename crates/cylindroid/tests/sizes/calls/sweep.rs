@@ -50,6 +50,7 @@ calls! {
     sweep::Sweep::quantities;
     sweep::Sweep::recipe;
     sweep::Sweep::recipe_difference;
+    sweep::Sweep::relative_to;
     sweep::Sweep::rows;
     sweep::Sweep::rows_in;
     sweep::Sweep::statistics = |s: &'static Sweep, threads: Option<NonZeroUsize>, go_on: bool| s.statistics(threads, |_| go_on);
