@@ -262,6 +262,90 @@ fn interrupted_processes_are_resumed() {
     assert_eq!(manifest(&own)["complete"], true);
 }
 
+/// With a limit on the size of files, which is an error of writing as a full disk is.
+#[cfg(unix)]
+fn limited(blocks: u32, arguments: &[&str]) -> std::process::Output {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    Command::new("sh")
+        .args(["-c", &script, env!("CARGO_BIN_EXE_cylindroid")])
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// Where a part or the manifest cannot be written, the parts before it stay, the error says so, and a run
+/// with room goes on to the bytes of an uninterrupted one.
+#[cfg(unix)]
+#[test]
+fn full_disks_lose_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    // Parts of 60 kB, beside whose first ones there is no room for others; 600 parts of 3 kB, whose
+    // manifest has no room. Blocks have 512 or 1024 bytes.
+    for (name, rows, part_rows, blocks, file) in
+        [("parts", "8000", "400", 24, "part-"), ("manifest", "2400", "4", 60, "manifest.json")]
+    {
+        let [whole, own] = ["whole", "own"].map(|run| folder.path().join(format!("{name}-{run}")));
+        let of = |folder: &Path| {
+            let sweep = ["sweep", "youbot", "--samples", rows, "--part-rows", part_rows];
+            let more = ["--quantities", "pose,yoshikawa", "--threads", "2", "--out"];
+            let all = [&sweep[..], &more, &[folder.to_str().unwrap()]].concat();
+            all.into_iter().map(str::to_owned).collect::<Vec<_>>()
+        };
+        let run = |folder: &Path, resume: bool| {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_cylindroid"));
+            command.args(of(folder)).stdout(Stdio::null()).stderr(Stdio::null());
+            if resume {
+                command.arg("--resume");
+            }
+            command
+        };
+        assert!(run(&whole, false).status().unwrap().success());
+        let mut arguments = of(&own);
+        let mut kept = Vec::new();
+        if name == "parts" {
+            // Some parts are there.
+            let mut child = run(&own, false).spawn().unwrap();
+            while listed(&own) < 2 && child.try_wait().unwrap().is_none() {
+                sleep(Duration::from_millis(1));
+            }
+            child.kill().unwrap();
+            child.wait().unwrap();
+            let mut all = manifest(&own);
+            kept = all["parts"].as_array().unwrap()[..2].to_vec();
+            // On a machine that was faster, the others are gone.
+            for part in all["parts"].as_array_mut().unwrap().drain(2..) {
+                fs::remove_file(own.join(part["file"].as_str().unwrap())).unwrap();
+            }
+            all["complete"] = false.into();
+            fs::write(own.join("manifest.json"), all.to_string()).unwrap();
+            arguments.push("--resume".to_owned());
+        }
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let output = limited(blocks, &arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("cannot write") && message.contains(file), "{message}");
+        assert!(message.contains("finished parts are kept, --resume continues"), "{message}");
+        let after = manifest(&own);
+        assert_eq!(after["complete"], false);
+        let parts = after["parts"].as_array().unwrap();
+        assert!(kept.iter().all(|part| parts.contains(part)));
+        for part in parts {
+            let path = own.join(part["file"].as_str().unwrap());
+            assert_eq!(Some(fs::metadata(path).unwrap().len()), part["bytes"].as_u64());
+        }
+        let names = fs::read_dir(&own).unwrap().map(|entry| entry.unwrap().file_name());
+        let half = names.filter(|name| name.to_string_lossy().starts_with(".part-"));
+        assert_eq!(half.count(), 0, "parts that were not finished give their room back");
+        assert!(run(&own, true).status().unwrap().success());
+        assert_eq!(manifest(&own), manifest(&whole));
+        for part in manifest(&own)["parts"].as_array().unwrap() {
+            let file = part["file"].as_str().unwrap();
+            assert!(fs::read(own.join(file)).unwrap() == fs::read(whole.join(file)).unwrap());
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_swept_is_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -337,7 +421,6 @@ fn distances_to_obstacles() {
     assert!(with(&ball).contains("obstacle_distance alone"));
     assert!(with(&["pose", "--meshes", "convex_hull"]).contains("self_distance"));
     assert!(with(&["obstacle_distance"]).contains("no obstacle"));
-}
 
     // Designs have their own shapes, and no obstacles.
     let designs = ["sweep", DESIGNS, "--over", "crank=0.4:0.5:2", "--quantities"];
@@ -407,3 +490,4 @@ fn two_arms_together() {
     assert!(unknown.contains("right/hand_tcp"), "{unknown}");
     let map = ["sweep", TWO_ARMS, "--reach", "x=0:1:2", "--relative-to", "chest"];
     assert!(crate::refused(&map).contains("--relative-to"));
+}

@@ -124,7 +124,8 @@ fn sync_folder(folder: &Path) -> std::io::Result<()> {
 }
 
 pub(super) fn cannot_write(path: &Path, error: &std::io::Error) -> Error {
-    let full = error.kind() == std::io::ErrorKind::StorageFull;
+    use std::io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    let full = matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge);
     let hint = "; finished parts are kept, --resume continues after them";
     let message = format!("{error}{}", if full { hint } else { "" });
     Error::Io { path: path.to_owned(), action: "write", message }

@@ -110,6 +110,59 @@ fn distances_are_indices() {
     assert!(best[0] > 0.0 && best[0] < 1.0 && best[1].is_nan(), "{best:?}");
 }
 
+/// On the branch of home, those of the collision model; a sample without a path has none.
+#[test]
+fn distances_of_closed_chains() {
+    let joint = |name: &str, links: [&str; 2], at: [f64; 2], more: &str| {
+        let ([a, b], [x, z]) = (links, at);
+        format!(
+            "[[joint]]\nname = '{name}'\ntype = 'revolute'\nbetween = ['{a}', '{b}']\n\
+             origin = [{x:?}, 0, {z:?}]\naxis = [0, 1, 0]\n{more}\n"
+        )
+    };
+    let ball = |link: &str, x: f64, z: f64| {
+        format!(
+            "[[collision]]\nlink = '{link}'\nshape = 'sphere'\nradius = 0.1\nxyz = [{x}, 0, {z}]\n"
+        )
+    };
+    let text = [
+        "reference = 'coupler'\n".to_owned(),
+        joint("a", ["ground", "crank"], [0.0, 0.0], "actuated = true"),
+        joint("b", ["crank", "coupler"], [0.0, 1.3], ""),
+        joint("c", ["coupler", "rocker"], [2.5, 1.5], ""),
+        joint("d", ["ground", "rocker"], [2.0, 0.0], ""),
+        ball("coupler", 1.2, 0.5),
+        ball("crank", 0.0, 0.4),
+        "[[collision]]\nlink = 'ground'\nshape = 'half_space'\nxyz = [0, 0, -0.1]\n".to_owned(),
+    ]
+    .concat();
+    let model = ParametricModel::of_text(&text, Path::new("four-bar.toml"), &[]).unwrap();
+    let robot = model.nominal();
+    assert!(robot.is_closed());
+    let mut shapes = CollisionModel::new(robot, &CollisionOptions::default()).unwrap();
+    let at = Pose::from_translation(Vec3::new(0.5, 0.0, 2.0));
+    shapes.add_obstacle("ball", &Geometry::Sphere { radius: 0.2 }, at).unwrap();
+    let sweep = Sweep::new(robot, options(shapes.clone(), 120)).unwrap();
+    let table = sweep.table(0..120).unwrap();
+    let columns = ["self_distance", "obstacle_distance"].map(|name| table.numbers(name).unwrap());
+    let (mut near, mut found) = (Vec::new(), 0);
+    for (row, q) in configurations(robot, &table).iter().enumerate() {
+        if q[0].is_nan() {
+            assert!(columns.iter().all(|column| column[row].is_nan()));
+            continue;
+        }
+        found += 1;
+        shapes.near(&robot.state(q).unwrap(), f64::INFINITY, &mut near).unwrap();
+        for (kind, column) in columns.iter().enumerate() {
+            let own = near.iter().filter(|pair| pair.link_b.is_none() == (kind == 1));
+            let smallest = own.map(|pair| pair.distance).fold(f64::INFINITY, f64::min);
+            assert_eq!(column[row].to_bits(), smallest.to_bits(), "row {row}");
+            assert!(smallest.is_finite());
+        }
+    }
+    assert!((10..110).contains(&found), "{found} of 120");
+}
+
 #[test]
 fn folders_know_their_shapes() {
     let robot = cell();
