@@ -32,7 +32,7 @@ Examples:
   cylindroid map 3rps --over pitch=-1.5:1.5:61 --over roll=-1.5:1.5:61 --plot map.svg
   cylindroid map stewart --over x=-0.4:0.4:41 --over y=-0.4:0.4:41 --at z=1.1
   cylindroid map panda --over x=0:0.8:41 --over z=0:1:51 --free yaw
-  cylindroid map 3rrr --over x=-0.3:0.3:21 --over y=-0.3:0.3:21 --over rz=-0.6:0.6:21 --mesh locus.obj
+  cylindroid map 3rrr --over x=-0.3:0.3:9 --over y=-0.3:0.3:9 --over rz=-1:1:9 --mesh locus.obj
 
 Components: x, y, z [m], roll, pitch, yaw [rad, R = Rz(yaw) Ry(pitch) Rx(roll)]; in the plane x, y, rz.";
 

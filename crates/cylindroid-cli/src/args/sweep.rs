@@ -47,7 +47,7 @@ Examples:
   cylindroid sweep ur5e --reach x=-1:1:21 --reach z=-0.5:1:16 --plot reach.svg
   cylindroid sweep panda --samples 1e4 --quantities pose,yoshikawa --plot cloud.svg
   cylindroid sweep docs/cell.toml --samples 1e4 --quantities self_distance
-  cylindroid sweep docs/two-arms.toml --samples 1e4 --frame left/hand_tcp --relative-to right/hand_tcp
+  cylindroid sweep docs/two-arms.toml --samples 1e4 --relative-to right/hand_tcp
 
 Quantities:
   pose                     position and unit quaternion of the frame

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::closed::robots;
 use crate::distance::CELL;
+use crate::sweep::TWO_ARMS;
 use crate::text;
 
 pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
@@ -58,6 +59,7 @@ fn examples_run_as_they_stand() {
     fs::copy(TASKS, docs.join("tasks.toml")).unwrap();
     fs::copy(GOALS, docs.join("goals.toml")).unwrap();
     fs::copy(DESIGNS, docs.join("designs.toml")).unwrap();
+    fs::copy(TWO_ARMS, docs.join("two-arms.toml")).unwrap();
     fs::write(folder.path().join("axes.csv"), "0,0,0,0,0,1\n0,0,-0.2,1,0,0\n").unwrap();
     let home = ["0"; 21].join(",");
     fs::write(folder.path().join("configurations.csv"), format!("{home}\n{home}\n")).unwrap();
@@ -179,7 +181,11 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "sweep" => {
             const FILE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/documents.csv");
             let some = ["youbot", "--samples", "50"];
-            vec![with(&some, &["--quantities", "pose,gibson_hunt"]), with(&some, &["--out", FILE])]
+            vec![
+                with(&some, &["--quantities", "pose,gibson_hunt"]),
+                with(&some, &["--out", FILE]),
+                vec!["panda", "--samples", "9", "--relative-to", "link4"],
+            ]
         }
         "optimise" => {
             let vary = ["--vary", "crank=0.3:0.8", "--minimise", "anisotropy", "--designs", "9"];

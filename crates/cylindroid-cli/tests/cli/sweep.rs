@@ -435,7 +435,7 @@ fn distances_to_obstacles() {
     assert!(bare.contains("self_distance") && bare.contains("collision shape"), "{bare}");
 }
 
-const TWO_ARMS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/two-arms.toml");
+pub(crate) const TWO_ARMS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/two-arms.toml");
 
 /// One hand as seen from the other: the columns of `jacobian --relative-to`, in statistics, folders and
 /// the table, and what has no other frame.
