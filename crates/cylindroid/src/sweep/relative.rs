@@ -4,8 +4,8 @@
 //! Shapes   poses: N x 16, Jacobians: N x 6 x n; row-major, as of `KinematicsBatch`
 //! Units    m, rad; m/s and rad/s for each unit of joint velocity
 //! Frame    point: the tool's origin; axes: those of the base
-//! Valid    any mechanism; quantities of Jacobians, as others of them, without loops. In the plane the
-//!          base has an axis along the normal
+//! Valid    any mechanism; quantities of Jacobians, as others of them, without loops. In the plane
+//!          measures need a base with its z axis along the normal
 //! Why so   the kinematics are those of `State`, one configuration after the other: joints that carry
 //!          both frames have exact zeros, which the difference of two batches would round
 //! Checked  tests/sweep/relative.rs
@@ -17,6 +17,9 @@ use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, State};
 use crate::linalg::Matrix;
 use crate::model::{Dimension, FrameId, Mechanism};
+
+/// Difference from 1 of the cosine between a z axis and the normal of the plane, by rounding.
+const UPRIGHT: f64 = 1e-12;
 
 /// Two frames, and a state of the mechanism.
 #[derive(Debug, Clone)]
@@ -61,9 +64,14 @@ impl Relative {
             _ => {}
         }
         let state = mechanism.state(mechanism.home())?;
-        let normal = state.pose(base)?.rotation.z_axis();
-        if mechanism.dimension() == Dimension::Planar && normal.z.abs() < 1.0 - UPRIGHT {
-            return refuse("in the plane it needs a z axis along the normal".to_owned());
+        let sees_task = options.quantities.iter().any(|q| q.sees_task());
+        let is_tilted = state.pose(base)?.rotation.z_axis().z.abs() < 1.0 - UPRIGHT;
+        if mechanism.dimension() == Dimension::Planar && sees_task && is_tilted {
+            return refuse(
+                "in the plane the components of the twist are those of a frame with its z axis along \
+                 the normal"
+                    .to_owned(),
+            );
         }
         let jacobian = Matrix::zeros(6, mechanism.n());
         Ok(Some(Self { tool, base, state, jacobian }))
@@ -96,6 +104,3 @@ impl Relative {
         Ok(())
     }
 }
-
-/// Largest cosine that an axis along the normal misses.
-const UPRIGHT: f64 = 1e-12;

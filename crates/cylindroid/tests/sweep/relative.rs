@@ -235,7 +235,8 @@ fn planar() -> ParametricModel {
             );
         }
         text += &format!(
-            "[[frame]]\nname = '{arm}_tip'\nlink = '{arm}2'\nxyz = ['{sign} * link', 0, 0]\n"
+            "[[frame]]\nname = '{arm}_tip'\nlink = '{arm}2'\nxyz = ['{sign} * link', 0, 0]\n\
+             [[frame]]\nname = '{arm}_tilted'\nlink = '{arm}2'\nxyz = [0, 0, 0]\nrpy = [0.5, 0, 0]\n"
         );
     }
     ParametricModel::of_text(&text, Path::new("arms.toml"), &[]).unwrap()
@@ -322,6 +323,12 @@ fn what_has_no_other_frame_is_refused() {
     let poses = Source::Poses { targets: vec![Pose::IDENTITY], task: Task::POSE };
     let error = refused(with(poses));
     assert!(error.contains("relative_to") && error.contains("poses"), "{error}");
+    // Components of the plane are no others of a frame that is tilted.
+    let model = planar();
+    let tilted = |quantity| seen(model.nominal(), ["a_tip", "b_tilted"], &[quantity]);
+    let error = Sweep::new(model.nominal(), tilted(Quantity::Condition)).unwrap_err().to_string();
+    assert!(error.contains("relative_to = b_tilted") && error.contains("the plane"), "{error}");
+    assert!(Sweep::new(model.nominal(), tilted(Quantity::Pose)).is_ok());
     let other = cylindroid::load("panda").unwrap();
     let foreign = SweepOptions {
         relative_to: Some(other.frame("link4").unwrap()),
