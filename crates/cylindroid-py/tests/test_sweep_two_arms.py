@@ -15,6 +15,7 @@ tool = "left/hand_tcp"
 name = "torso"
 type = "revolute"
 between = ["ground", "chest"]
+origin = [0, 0, 0.5]
 axis = [0, 0, 1]
 limits = { lower = -1.5, upper = 1.5 }
 [[robot]]

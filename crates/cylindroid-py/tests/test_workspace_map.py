@@ -134,10 +134,12 @@ def test_input_is_checked():
 
 def test_a_mode_is_drawn(found):
     pytest.importorskip("matplotlib")
-    ax = cy.plot.map(found, mode=1)
+    from cylindroid import plot
+
+    ax = plot.map(found, mode=1)
     assert ax.get_xlabel() == "x (m)" and len(ax.get_lines()) >= 1
     with pytest.raises(ValueError, match="mode"):
-        cy.plot.map(found, mode=9)
+        plot.map(found, mode=9)
     line = cy.workspace_map(cy.load("five-bar"), {"x": (0.5, 1.5, 3)}, at={"y": 1.5})
     with pytest.raises(ValueError, match="axes"):
-        cy.plot.map(line)
+        plot.map(line)
