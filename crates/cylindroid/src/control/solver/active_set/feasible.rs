@@ -96,7 +96,7 @@ impl ActiveSet {
     }
 
     /// The coefficients of `normal` in the working rows, into `gradient`.
-    fn load_multipliers_of_normal(&mut self) {
+    pub(super) fn load_multipliers_of_normal(&mut self) {
         for k in 0..self.working.len() {
             self.gradient[k] = dot(self.basis.column(self.fixed + k), &self.normal);
         }

@@ -7,7 +7,7 @@
 //!          left along weak directions, which take no part in steps; no row is needed for it
 //! Valid    where the working rows leave free motions: at a corner nothing is left on them, and a row that
 //!          a weak direction needs is held. A level that ends after the most rounds keeps more rows. Rows
-//!          that depend on the working ones but for `DEPENDENT` stop long motions short of the optimum
+//!          that depend on higher levels but for `DEPENDENT` stop long motions short of the optimum
 //! Source   Nocedal & Wright, Numerical Optimization, 2006, 16.5
 //! Checked  src/control/solver/hierarchy/tests.rs::levels_are_the_optima_of_clarabel,
 //!          src/control/solver/hierarchy/findings.rs::findings_stay_mended,
@@ -15,7 +15,8 @@
 //!          src/control/solver/hierarchy/findings.rs::dependent_rows_keep_their_bounds
 
 use super::{
-    ActiveSet, BEYOND, Objective, Precision, ROUNDING, ROUNDS, STILL, Use, solve_triangle,
+    ActiveSet, BEYOND, DEPENDENT, Objective, Precision, ROUNDING, ROUNDS, STILL, Use,
+    solve_triangle,
 };
 use crate::linalg::{dot, norm};
 
@@ -36,8 +37,16 @@ impl ActiveSet {
                 self.rounds += 1;
             }
             self.load_direction(&mut objective, precision, &mut projected);
-            // Nothing goes on beside a row that cannot be added.
-            let blocked = self.advance().filter(|(_, row, _)| self.uses[*row] == Use::Free);
+            let mut blocked = self.advance();
+            if let Some((_, row, sign)) = blocked
+                && self.uses[row] == Use::Dependent
+            {
+                projected = 0;
+                if self.exchange(row, sign) {
+                    continue;
+                }
+                blocked = None;
+            }
             let Some((share, row, sign)) = blocked else {
                 let least = self.load_gradient(&mut objective, precision);
                 // At rounds without progress the first row is as good as the most promising one.
@@ -116,7 +125,7 @@ impl ActiveSet {
     }
 
     /// Moves along the direction to its end or to the first row in the way: the share of the
-    /// motion, that row and the sign of its bound. Rows that depend on the working ones up to
+    /// motion, that row and the sign of its bound. Rows that depend on others but for
     /// `DEPENDENT` still move with long motions: they are in the way once beyond their bounds.
     pub(super) fn advance(&mut self) -> Option<(f64, usize, f64)> {
         let size = norm(&self.direction);
@@ -150,6 +159,24 @@ impl ActiveSet {
             self.y[row] = self.inequalities.bound(row, sign);
         }
         first
+    }
+
+    /// Takes a row in the way that depends on working ones into their place: the one of the largest share
+    /// leaves its bound inwards while the row stays. False if it depends on higher levels alone.
+    fn exchange(&mut self, row: usize, sign: f64) -> bool {
+        self.inequalities.write(row, sign, &mut self.normal);
+        self.load_multipliers_of_normal();
+        let least = DEPENDENT * self.inequalities.length(row);
+        let mut largest: (f64, Option<usize>) = (least, None);
+        for (k, w) in self.working.iter().enumerate() {
+            let share = self.gradient[k] * self.inequalities.length(w.row);
+            if share > largest.0 && !self.inequalities.is_equality(w.row) {
+                largest = (share, Some(k));
+            }
+        }
+        let Some(k) = largest.1 else { return false };
+        self.remove(k);
+        self.add(row, sign)
     }
 
     /// The gradient of the objective, and the multipliers of the working rows; returns the

@@ -240,7 +240,9 @@ fn product(row: &[f64], y: &[f64]) -> (f64, f64) {
 /// The nearest point to a goal.
 fn check_nearest(steps: &Steps<'_>, goal: &[f64], what: &str) {
     let along: Vec<f64> = goal.iter().zip(steps.y).map(|(g, y)| g - y).collect();
-    check_gain(steps, &along, slack(norm(goal)), what);
+    let far = FAR * (along.len() as f64).sqrt();
+    let left_by_rounding = ROUNDING * norm(steps.y) * steps.amplification();
+    check_gain(steps, &along, slack(norm(goal)) + far * left_by_rounding, what);
 }
 
 /// The largest gap for a target of this size, besides a share of the slope.
@@ -253,6 +255,11 @@ fn check_gain(steps: &Steps<'_>, along: &[f64], slack: f64, what: &str) {
     let most = steps.gain(along);
     let slope = FAR * (along.len() as f64).sqrt() * norm(along);
     assert!(most <= slack + GAP * slope, "{what}: a step gains {most:e} of {slope:e}");
+}
+
+/// True if a step within these bounds of a row stands at one of them.
+fn binds(bounds: &Interval, row: &[f64], y: &[f64]) -> bool {
+    bounds.upper.min(-bounds.lower) <= 10.0 * FEASIBLE * (norm(row) + norm(y))
 }
 
 /// The space of these rows of n entries.
@@ -306,10 +313,7 @@ impl<'a> Steps<'a> {
 
     /// The rows kept, and the bounds that bind.
     fn binding(&self) -> Vec<&'a [f64]> {
-        let binds = |b: &Interval, row| {
-            b.upper.min(-b.lower) <= 10.0 * FEASIBLE * (norm(row) + norm(self.y))
-        };
-        let bounds = self.bounds().filter(|(row, b)| binds(b, row)).map(|bound| bound.0);
+        let bounds = self.bounds().filter(|(row, b)| binds(b, row, self.y)).map(|bound| bound.0);
         self.kept.iter().copied().chain(bounds).collect()
     }
 
@@ -335,9 +339,19 @@ impl<'a> Steps<'a> {
         let n = self.y.len();
         let (equal, rows): (Vec<_>, Vec<_>) =
             self.bounds().partition(|(_, b)| b.upper - b.lower < 1e-12);
-        let kept: Vec<&[f64]> =
+        let mut kept: Vec<&[f64]> =
             self.kept.iter().copied().chain(equal.iter().map(|b| b.0)).collect();
-        let free = self.free(&kept);
+        let mut free = self.free(&kept);
+        // Rows that bind and depend on these but for `DEPENDENT` stop the solver.
+        let stops = |(row, b): &&(&[f64], Interval)| {
+            let outside = norm(&free.transpose().mul_vec(row));
+            binds(b, row, self.y) && outside <= 10.0 * DEPENDENT * norm(row)
+        };
+        let stopping: Vec<&[f64]> = rows.iter().filter(stops).map(|b| b.0).collect();
+        if !stopping.is_empty() {
+            kept.extend(stopping);
+            free = self.free(&kept);
+        }
         let m = free.cols();
         if m == 0 {
             return (0.0, vec![0.0; n]);
