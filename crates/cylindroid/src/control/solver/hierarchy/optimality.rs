@@ -41,7 +41,7 @@ const WEAK_LEVEL: Weak =
     Weak { below: 1e-3, none: Precision::STRAIGHT.rank, curvature: 1.0, least: LEAST_DAMPING };
 
 /// The rank of levels is unclear where a singular value lies between these shares of the largest.
-const UNCLEAR: [f64; 2] = [1e-13, 1e-6];
+const UNCLEAR: [f64; 2] = [1e-13, 1e-5];
 
 /// Singular values that are lost to rounding.
 const LOST: f64 = 1e-14;
