@@ -84,6 +84,7 @@ test("answers that come after another frame was chosen are not shown", () =>
         const [name, value] = /** @type {any} */ (window).heard.find((/** @type {any} */ one) => one[0] === which);
         // The answer of before, with other numbers.
         session.emit(name, JSON.parse(JSON.stringify(value).replaceAll(/\d\.\d+/g, "7.7")));
+        session.emit("failure", { type: "error", reply_to: value.reply_to, message: "refused" });
       }
       return [before, text()];
     });

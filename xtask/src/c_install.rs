@@ -34,6 +34,9 @@ pub(crate) fn install(prefix: &Path) -> Result<()> {
     for header in ["cylindroid.h", "cylindroid.hpp"] {
         copy(&own.join("include").join(header), &prefix.join("include").join(header))?;
     }
+    for licence in ["LICENSE-APACHE", "LICENSE-MIT"] {
+        copy(&root().join(licence), &prefix.join("share/doc/cylindroid").join(licence))?;
+    }
     // The last one of Windows is what programs of the DLL link.
     let libraries: &[&str] = if cfg!(windows) {
         &["cylindroid_c.dll", "cylindroid_c.lib", "cylindroid_c.dll.lib"]

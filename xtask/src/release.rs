@@ -73,8 +73,10 @@ pub(crate) fn task(arguments: &[String]) -> Result<()> {
     println!("what would be uploaded, version {VERSION}:");
     let mut files: Vec<&PathBuf> = crates.iter().chain([&distribution]).collect();
     list(&files)?;
-    let is_small = |file: &PathBuf| fs::metadata(file).is_ok_and(|file| file.len() < LARGEST_CRATE);
-    ensure!(crates.iter().all(is_small), "crates.io refuses crates of more than 10 MB");
+    for file in &crates {
+        let is_small = fs::metadata(file)?.len() < LARGEST_CRATE;
+        ensure!(is_small, "{}: crates.io refuses crates of more than 10 MB", file.display());
+    }
     if !changed.is_empty() {
         println!("\nnot in the last commit, and yet in the packages:\n{changed}");
     }
@@ -159,13 +161,14 @@ fn build(crates: &[PathBuf], distribution: &Path) -> Result<[PathBuf; 2]> {
     run(Command::new(program("cylindroid-ros2")).arg("--version"))?;
 
     println!("\nthe library for C and C++");
-    let prefix = folder.0.join("c");
+    let name = format!("cylindroid-c-{VERSION}");
+    let prefix = folder.0.join(&name);
     c_install::install(&prefix)?;
     c_install::use_installed(&prefix, &folder.0)?;
     let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
-    let archive = root().join(format!("target/package/cylindroid-c-{VERSION}-{arch}-{os}.tar.gz"));
+    let archive = root().join(format!("target/package/{name}-{arch}-{os}.tar.gz"));
     let tar = ["--create", "--gzip", "--file"];
-    run(Command::new("tar").args(tar).arg(&archive).arg("--directory").arg(&prefix).arg("."))?;
+    run(Command::new("tar").args(tar).arg(&archive).arg("--directory").arg(&folder.0).arg(&name))?;
 
     println!("\nthe Python package of {}", distribution.display());
     python::use_alone(distribution)?;

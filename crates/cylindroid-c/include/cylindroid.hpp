@@ -45,7 +45,7 @@ inline void check(cyl_status status) {
 
 namespace detail {
 template <class T>
-using RemoveReference = std::remove_const_t<std::remove_reference_t<T>>;
+using RemoveConstReference = std::remove_const_t<std::remove_reference_t<T>>;
 
 template <class C, class = void>
 struct HasStrides : std::false_type {};
@@ -66,6 +66,28 @@ std::size_t contiguous_size(const C &c) {
             throw Error(CYL_DIMENSION, "the numbers do not lie one after the other: copy the block");
     }
     return static_cast<std::size_t>(c.size());
+}
+
+/// The rows of a matrix of Eigen; 0 of what has no shape.
+template <class C>
+std::size_t rows_of(const C &c) {
+    if constexpr (HasStrides<C>::value) {
+        if constexpr (!C::IsVectorAtCompileTime) return static_cast<std::size_t>(c.rows());
+    }
+    return 0;
+}
+
+/// Refuses matrices of another size or shape.
+inline void check_shape(std::size_t size, std::size_t own_rows, std::size_t rows, std::size_t cols,
+                        const char *what) {
+    if (size == rows * cols && (own_rows == 0 || own_rows == rows)) return;
+    const std::string found =
+        own_rows == 0 || size == 0
+            ? std::to_string(size) + " entries"
+            : std::to_string(own_rows) + " x " + std::to_string(size / own_rows) + " entries";
+    throw Error(CYL_DIMENSION, (std::string(what) + " has " + found + ", expected " +
+                                std::to_string(rows) + " x " + std::to_string(cols))
+                                   .c_str());
 }
 
 template <class C>
@@ -97,7 +119,8 @@ class Numbers {
     template <class Container,
               class = std::enable_if_t<
                   std::is_convertible_v<detail::Data<const Container>, const double *>>>
-    Numbers(const Container &c) : data_(c.data()), size_(detail::contiguous_size(c)) {}
+    Numbers(const Container &c)
+        : data_(c.data()), size_(detail::contiguous_size(c)), rows_(detail::rows_of(c)) {}
     const double *data() const noexcept { return data_; }
     std::size_t size() const noexcept { return size_; }
     const double *sized(std::size_t expected, const char *what) const {
@@ -107,30 +130,43 @@ class Numbers {
                                            .c_str());
         return data_;
     }
+    /// Of a matrix by columns.
+    const double *shaped(std::size_t rows, std::size_t cols, const char *what) const {
+        detail::check_shape(size_, rows_, rows, cols, what);
+        return data_;
+    }
 
    private:
     const double *data_;
     std::size_t size_;
+    std::size_t rows_ = 0;
 };
 
 /// The same, to be written to: containers that have a name, and views.
 class Out {
    public:
     Out(double *data, std::size_t size) : data_(data), size_(size) {}
-    template <class Container, class C = detail::RemoveReference<Container>,
+    template <class Container, class C = detail::RemoveConstReference<Container>,
               class = std::enable_if_t<
                   !std::is_same_v<C, Out> &&
                   (std::is_lvalue_reference_v<Container> || detail::IsView<C>::value) &&
                   std::is_same_v<detail::Data<std::remove_reference_t<Container>>, double *>>>
-    Out(Container &&c) : data_(c.data()), size_(detail::contiguous_size(c)) {}
+    Out(Container &&c)
+        : data_(c.data()), size_(detail::contiguous_size(c)), rows_(detail::rows_of(c)) {}
     double *sized(std::size_t expected, const char *what) const {
         Numbers(data_, size_).sized(expected, what);
+        return data_;
+    }
+    /// Of a matrix by columns.
+    double *shaped(std::size_t rows, std::size_t cols, const char *what) const {
+        detail::check_shape(size_, rows_, rows, cols, what);
         return data_;
     }
 
    private:
     double *data_;
     std::size_t size_;
+    std::size_t rows_ = 0;
 };
 
 namespace detail {
@@ -217,7 +253,7 @@ class State {
     }
     void jacobian(Out out, std::size_t frame = CYL_DEFAULT_FRAME,
                   cyl_reference reference = CYL_LOCAL_WORLD_ALIGNED) {
-        check(cyl_state_jacobian(handle_.get(), frame, reference, out.sized(6 * n_, "jacobian")));
+        check(cyl_state_jacobian(handle_.get(), frame, reference, out.shaped(6, n_, "jacobian")));
     }
 #ifdef CYLINDROID_HAS_EIGEN
     Eigen::Matrix<double, 6, Eigen::Dynamic> jacobian(
@@ -355,8 +391,8 @@ class Batch {
 inline std::size_t inverse(Numbers matrix, std::size_t rows, std::size_t cols,
                            const std::string &method, Out out) {
     std::size_t rank = 0;
-    check(cyl_inverse(matrix.sized(rows * cols, "matrix"), rows, cols, method.c_str(),
-                      out.sized(rows * cols, "inverse"), &rank));
+    check(cyl_inverse(matrix.shaped(rows, cols, "matrix"), rows, cols, method.c_str(),
+                      out.shaped(cols, rows, "inverse"), &rank));
     return rank;
 }
 
@@ -365,8 +401,8 @@ inline std::size_t inverse(Numbers matrix, std::size_t rows, std::size_t cols,
 inline bool hyperbolic_pseudoinverse(Numbers jacobian, double h, Out out) {
     const std::size_t cols = jacobian.size() / 6;
     bool exists = false;
-    check(cyl_hyperbolic(jacobian.sized(6 * cols, "jacobian"), cols, h, &exists,
-                         out.sized(6 * cols, "inverse")));
+    check(cyl_hyperbolic(jacobian.shaped(6, cols, "jacobian"), cols, h, &exists,
+                         out.shaped(cols, 6, "inverse")));
     return exists;
 }
 

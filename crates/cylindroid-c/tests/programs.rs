@@ -75,6 +75,9 @@ fn build_with(
 fn programs_in_c_and_cpp_run() {
     let folder = tempfile::tempdir().unwrap();
     let mut compilers = 0;
+    if eigen().is_none() {
+        println!("without Eigen: neither CYLINDROID_EIGEN nor pkg-config names its headers");
+    }
     for (c, cpp) in [("gcc", "g++"), ("clang", "clang++")] {
         if !is_there(c) || !is_there(cpp) {
             continue;
@@ -87,8 +90,10 @@ fn programs_in_c_and_cpp_run() {
         let with_eigen = eigen().map(|folder| ("-std=c++17", Some(folder)));
         for (standard, eigen) in standards.into_iter().chain(with_eigen) {
             let program = build_with(eigen.as_deref(), cpp, standard, "loop.cpp", folder.path());
-            let text = output(&mut Command::new(program));
+            let text = output(&mut Command::new(&program));
             assert!(text.contains("median") && text.contains("refused"), "{text}");
+            let text = output(Command::new(program).args(["50", "1"]));
+            assert!(text.contains("every 1 ms"), "{text}");
         }
     }
     assert!(compilers > 0, "neither gcc nor clang is installed");
@@ -144,6 +149,8 @@ fn a_step_from_cpp_beside_one_from_rust() {
         let rust = median_step(200_000);
         println!("panda, us a step: C++ {cpp:.3}, Rust {rust:.3}: {:+.0} ns", 1e3 * (cpp - rust));
     }
+    let text = output(Command::new(&program).args(["20000", "1"]));
+    println!("{}", text.lines().take(2).collect::<Vec<_>>().join("\n"));
 }
 
 /// The controller of ros2_control, compiled with stubs of the headers of ROS 2 and run.

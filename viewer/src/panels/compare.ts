@@ -57,6 +57,7 @@ export class Compare {
 
   /** Choices of a scene; the point starts next to the tool. */
   offer(scene: Scene): void {
+    [this.question, this.asked, this.oldest] = ["", null, null];
     this.form.hidden = scene.closed;
     if (scene.closed) {
       this.point = null;
@@ -66,7 +67,6 @@ export class Compare {
     }
     const names = scene.methods.map((method) => method.name);
     const old = [this.first.value, this.second.value];
-    [this.question, this.oldest] = ["", null];
     [this.first, this.second].forEach((choice, i) => {
       this.kept[i]?.fill(names, () => names.map((name) => h("option", { value: name }, name.replaceAll("-", " "))));
       const preferred = [old[i], i === 0 ? "truncated" : "hyperbolic", names[i]].find((name) => name && names.includes(name));

@@ -35,7 +35,7 @@ export class Reports {
     session.on("failure", ({ reply_to, message }) => {
       const name = typeof reply_to === "number" ? this.asked.get(reply_to) : undefined;
       if (!name) return;
-      this.watches.get(name)?.fail(message);
+      if (this.underWay.get(name) === reply_to) this.watches.get(name)?.fail(message);
       this.answered(name, reply_to);
     });
   }

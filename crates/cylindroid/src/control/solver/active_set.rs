@@ -51,13 +51,12 @@ const STILL: f64 = 1e-13;
 /// Descents towards a bound below this share of the largest possible one are roundings of zero [-].
 const PULL: f64 = 1e-9;
 
-/// Values of rows beyond their bounds by less than this, relative to one plus the bound, are within
-/// them [-].
+/// Values of rows beyond their bounds by less than this, relative to the length of the row plus the bound,
+/// are within them [-].
 pub(in crate::control) const FEASIBLE: f64 = 1e-11;
 
-/// Rows that depend on working ones may end beyond their bounds by this, relative to one plus the
-/// bound: more than what a start may leave, so that they stop no level at once.
-const BEYOND: f64 = 10.0 * FEASIBLE;
+/// Rows that depend on others may end beyond their bounds by this many times what a start may leave.
+const BEYOND: f64 = 10.0;
 
 /// Which decisions of a level count as zero, relative to its size.
 #[derive(Debug, Clone, Copy)]
@@ -262,14 +261,18 @@ impl ActiveSet {
                 let bound = self.inequalities.bound(i, sign);
                 if sign != 0.0
                     && self.uses[i] == Use::Free
-                    && (self.inequalities.value(i, &self.y) - bound).abs()
-                        <= FEASIBLE * (1.0 + bound.abs())
+                    && (self.inequalities.value(i, &self.y) - bound).abs() <= self.slack(i, bound)
                 {
                     self.add(i, sign);
                 }
             }
             true
         }
+    }
+
+    /// Values of a row beyond a bound by less than this are within it.
+    fn slack(&self, row: usize, bound: f64) -> f64 {
+        FEASIBLE * (self.inequalities.length(row).max(f64::MIN_POSITIVE) + bound.abs())
     }
 
     fn forget(&mut self) {

@@ -5,7 +5,7 @@
 //! Source   Flacco, De Luca & Khatib 2015, algorithm 1, for rows in place of joints
 //! Checked  src/control/solver/saturation/tests.rs, tests/it/servo/limits.rs::saturation_*
 
-use super::{ActiveSet, FEASIBLE, Level, Precision, STILL, Use, Working};
+use super::{ActiveSet, Level, Precision, STILL, Use, Working};
 use crate::linalg::norm;
 
 impl ActiveSet {
@@ -71,7 +71,7 @@ impl ActiveSet {
                 }
                 if b.abs() <= STILL * self.inequalities.length(i) * size {
                     let bound = self.inequalities.bound(i, self.inequalities.excess(i, a).1);
-                    if self.inequalities.excess(i, a).0 > FEASIBLE * (1.0 + bound.abs()) {
+                    if self.inequalities.excess(i, a).0 > self.slack(i, bound) {
                         least = f64::INFINITY;
                     }
                     continue;

@@ -5,7 +5,7 @@
 //! Source   Goldfarb & Idnani 1983
 //! Checked  src/control/solver/hierarchy/tests.rs::the_start_is_the_nearest_feasible_point
 
-use super::{ActiveSet, DEPENDENT, FEASIBLE, ROUNDS, Use, solve_triangle};
+use super::{ActiveSet, DEPENDENT, ROUNDS, Use, solve_triangle};
 use crate::linalg::dot;
 
 impl ActiveSet {
@@ -16,10 +16,9 @@ impl ActiveSet {
             let (excess, sign) = self.inequalities.excess(i, self.inequalities.value(i, &self.y));
             let bound = self.inequalities.bound(i, sign);
             let length = self.inequalities.length(i).max(f64::MIN_POSITIVE);
-            let excess = excess / length;
-            let slack = FEASIBLE * (1.0 + bound.abs() / length);
-            if excess > slack && worst.is_none_or(|w| excess > w.1) {
-                worst = Some((i, excess, sign));
+            let share = excess / length;
+            if excess > self.slack(i, bound) && worst.is_none_or(|w| share > w.1) {
+                worst = Some((i, share, sign));
             }
         }
         worst

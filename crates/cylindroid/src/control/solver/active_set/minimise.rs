@@ -38,26 +38,28 @@ impl ActiveSet {
             }
             self.load_direction(&mut objective, precision, &mut projected);
             let mut blocked = self.advance();
+            if let Some((share, ..)) = blocked {
+                standing = if share > 0.0 { 0 } else { standing + 1 };
+            }
+            // At rounds without progress the first row is as good as the most promising one.
+            let cautious = standing > self.y.len();
             if let Some((_, row, sign)) = blocked
                 && self.uses[row] == Use::Dependent
             {
                 projected = 0;
-                if self.exchange(row, sign) {
+                if !cautious && self.exchange(row, sign) {
                     continue;
                 }
                 blocked = None;
             }
-            let Some((share, row, sign)) = blocked else {
+            let Some((_, row, sign)) = blocked else {
                 let least = self.load_gradient(&mut objective, precision);
-                // At rounds without progress the first row is as good as the most promising one.
-                let cautious = standing > self.y.len();
                 if !self.release(least, cautious) {
                     break;
                 }
                 projected = 0;
                 continue;
             };
-            standing = if share > 0.0 { 0 } else { standing + 1 };
             if !self.add(row, sign) {
                 self.uses[row] = Use::Dependent;
             }
@@ -144,7 +146,7 @@ impl ActiveSet {
             if bound.is_infinite() {
                 continue;
             }
-            let slack = if is_free { 0.0 } else { sign * BEYOND * (1.0 + bound.abs()) };
+            let slack = if is_free { 0.0 } else { sign * BEYOND * self.slack(i, bound) };
             let room = (bound + slack - self.inequalities.value(i, &self.y)) / rate;
             if room < first.map_or(1.0, |f| f.0) {
                 first = Some((room.max(0.0), i, sign));
@@ -161,8 +163,9 @@ impl ActiveSet {
         first
     }
 
-    /// Takes a row in the way that depends on working ones into their place: the one of the largest share
-    /// leaves its bound inwards while the row stays. False if it depends on higher levels alone.
+    /// Takes a row in the way that depends on others into the place of the working one of which it has the
+    /// largest share: that one leaves its bound inwards while the row stays. False, without a change, if
+    /// it has a share of none that may leave: of higher levels, equal bounds and opposed rows alone.
     fn exchange(&mut self, row: usize, sign: f64) -> bool {
         self.inequalities.write(row, sign, &mut self.normal);
         self.load_multipliers_of_normal();
@@ -175,8 +178,14 @@ impl ActiveSet {
             }
         }
         let Some(k) = largest.1 else { return false };
+        let out = self.working[k];
         self.remove(k);
-        self.add(row, sign)
+        if self.add(row, sign) {
+            self.free_dependents();
+            return true;
+        }
+        self.add(out.row, out.sign);
+        false
     }
 
     /// The gradient of the objective, and the multipliers of the working rows; returns the
@@ -260,11 +269,16 @@ impl ActiveSet {
         }
         let Some((_, k)) = best else { return false };
         self.remove(k);
+        self.free_dependents();
+        true
+    }
+
+    /// After a working row has left, others may no longer depend on those that stay.
+    fn free_dependents(&mut self) {
         for use_of_row in &mut self.uses {
             if *use_of_row == Use::Dependent {
                 *use_of_row = Use::Free;
             }
         }
-        true
     }
 }

@@ -47,13 +47,14 @@ fn weak_directions_hold_no_bounds() {
     }
 }
 
-/// A row that depends on others but for 1e-11 keeps its bound in motions that are long enough to show it.
+/// A row that depends on others but for 1e-11 keeps its bound in motions that are long enough to show it,
+/// whatever its unit.
 #[test]
 fn dependent_rows_keep_their_bounds() {
-    let rows = vec![vec![1.0, 0.0], vec![0.0, 1.0], vec![1.0, 1e-11]];
-    let (lower, upper) = (vec![-1.0, -1e6, -1.0], vec![0.0, 1e6, 0.0]);
-    let problem = Problem { n: 2, boxed: true, rows, lower, upper, levels: Vec::new() };
-    for far in [1.0, 1e3, 1e6] {
+    for (far, unit) in [(1.0, 1.0), (1e3, 1.0), (1e6, 1.0), (1e6, 1e4), (1e6, 1e-4)] {
+        let rows = vec![vec![1.0, 0.0], vec![0.0, 1.0], vec![unit, 1e-11 * unit]];
+        let (lower, upper) = (vec![-1.0, -1e6, -unit], vec![0.0, 1e6, 0.0]);
+        let problem = Problem { n: 2, boxed: true, rows, lower, upper, levels: Vec::new() };
         let mut set = problem.active_set();
         assert!(set.start(&[1.0, 0.0]));
         let mut level = Level::new(2, 2);
@@ -61,7 +62,27 @@ fn dependent_rows_keep_their_bounds() {
         level.target.copy_from_slice(&[1.0, far]);
         set.solve(&mut level, Precision::STRAIGHT);
         let y = set.point();
-        assert!(y[0] <= 0.0 && y[0] + 1e-11 * y[1] <= 1.1e-10, "{far}: {y:?}");
-        assert!((y[1] - far).abs() <= 1e-9 * far && y[0] > -1e-4, "{far}: {y:?}");
+        assert!(y[0] <= 0.0 && y[0] + 1e-11 * y[1] <= 1.1e-10, "{far} {unit}: {y:?}");
+        assert!((y[1] - far).abs() <= 1e-9 * far && y[0] > -1e-4, "{far} {unit}: {y:?}");
     }
+}
+
+/// Rows that depended on one that another has replaced are rows like others again: the corner of three
+/// rows that differ by 1e-11 is reached.
+#[test]
+fn rows_depend_on_those_that_stay_alone() {
+    let rows = vec![vec![1.0, 0.0, 0.0], vec![1.0, 1e-11, 0.0], vec![1.0, 0.0, 1e-11]];
+    let (lower, upper) = (vec![-1.0; 3], vec![0.0; 3]);
+    let problem = Problem { n: 3, boxed: false, rows, lower, upper, levels: Vec::new() };
+    let mut set = problem.active_set();
+    assert!(set.start(&[1.0, 0.0, 0.0]));
+    let mut level = Level::new(3, 3);
+    level.rows = Matrix::identity(3);
+    level.target.copy_from_slice(&[1.0, 1e6, 2e6]);
+    set.solve(&mut level, Precision::STRAIGHT);
+    let y = set.point();
+    let excess = [y[0], y[0] + 1e-11 * y[1], y[0] + 1e-11 * y[2]];
+    assert!(excess.iter().all(|x| *x <= 1.1e-10), "{y:?}");
+    // The least of y_0 = -1e-11 max(y_1, y_2), from which y_1 and y_2 gain more than y_0 loses.
+    assert!((y[1] - 1e6).abs() < 1.0 && (y[2] - 2e6).abs() < 1.0, "{y:?}");
 }
