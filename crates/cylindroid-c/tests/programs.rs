@@ -117,8 +117,8 @@ fn median_step(steps: usize) -> f64 {
             let way = Vec3::new(ramp * r * (cos - 1.0), ramp * r * sin, 0.0);
             let pose = Pose { translation: start.translation + way, ..start };
             let along = Vec3::new(
-                growth.mul_add(cos - 1.0, -ramp * r * w * sin),
-                growth.mul_add(sin, ramp * r * w * cos),
+                growth * (cos - 1.0) - ramp * r * w * sin,
+                growth * sin + ramp * r * w * cos,
                 0.0,
             );
             let target =

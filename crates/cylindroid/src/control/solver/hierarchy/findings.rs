@@ -1,4 +1,6 @@
 //! Problems on which the solver failed.
+//!
+//! Checked  tests in this file
 
 use super::super::active_set::{Level, Precision};
 use super::optimality;
