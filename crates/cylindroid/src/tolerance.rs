@@ -70,7 +70,7 @@ pub const DEFAULT_RAMP: f64 = 20.0;
 /// against rounding in the caller's `q + dt * velocity` [-].
 pub const LIMIT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// A joint nearer to its limit than this [rad or m] is reported as being at it.
+/// A joint nearer to its limit than this [rad, or lengths of the mechanism] is reported as being at it.
 pub const AT_LIMIT: f64 = 1e-6;
 
 /// A joint velocity this near to its bound, relative to the bound, has reached it: scaling a motion

@@ -61,6 +61,15 @@ impl Mechanism {
         self.data.reach
     }
 
+    /// Unit of the change of a coordinate: [`Mechanism::reach`] for lengths, otherwise 1, also for loop
+    /// joints, whose places follow those of the coordinates.
+    pub(crate) fn unit_of(&self, place: usize) -> f64 {
+        match self.coordinates().get(place) {
+            Some(c) if c.kind.is_length() => self.reach(),
+            _ => 1.0,
+        }
+    }
+
     /// Largest distance of a joint from the origin of the world, at home (m).
     pub(crate) fn far_from_origin(&self) -> f64 {
         self.data.far

@@ -114,7 +114,8 @@ pub(crate) fn within_limits(mechanism: &Mechanism, mut q: Vec<f64>, places: &[us
 pub(crate) fn at_limit(mechanism: &Mechanism, q: &[f64]) -> Vec<usize> {
     let is_at_limit = |i: &usize| {
         let l = &mechanism.coordinates()[*i].limits;
-        q[*i] - l.lower < AT_LIMIT || l.upper - q[*i] < AT_LIMIT
+        let near = AT_LIMIT * mechanism.unit_of(*i);
+        q[*i] - l.lower < near || l.upper - q[*i] < near
     };
     (0..mechanism.n()).filter(is_at_limit).collect()
 }

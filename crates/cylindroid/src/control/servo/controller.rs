@@ -17,6 +17,7 @@
 
 mod behind_plant;
 pub(super) mod condition;
+mod edge_aim;
 mod escaping;
 mod generic_rank;
 mod moving_target;
@@ -29,8 +30,9 @@ use super::escape::Escape;
 use super::following::TargetFollower;
 use super::inertia_weights::InertiaWeights;
 use super::limits::{BrakingMargin, limits_of_servo};
+use super::loop_edge::LoopEdge;
 use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
-use super::nearest_pose::NearestPose;
+use super::nearest_pose::{EdgeAim, NearestPose};
 use super::options::ServoOptions;
 use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
@@ -92,6 +94,11 @@ pub struct Servo {
     hessian: Vec<Matrix>,
     /// To targets beyond reach; trees of joints with one coordinate only.
     nearest_pose: Option<Box<NearestPose>>,
+    /// The same of closed chains.
+    loop_edge: Option<Box<LoopEdge>>,
+    /// The pose towards which the motion of this step ends, and its error.
+    edge_aim: Option<EdgeAim>,
+    edge_error: Vec<f64>,
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
     inertia: Option<Box<InertiaWeights>>,
@@ -204,6 +211,9 @@ impl Servo {
             hessian,
             last: vec![0.0; rates],
             nearest_pose: None,
+            loop_edge: None,
+            edge_aim: None,
+            edge_error: vec![0.0; m],
             rates: vec![0.0; mechanism.n().max(rates)],
             accelerations: vec![0.0; mechanism.n().max(rates)],
             configuration: mechanism.home().to_vec(),
@@ -224,7 +234,12 @@ impl Servo {
             sensor_fit: None,
             chain,
         };
-        servo.generic_rank = if servo.coupled.is_some() {
+        servo.generic_rank = if let Some(coupled) = &servo.coupled {
+            if !servo.options.inertia_weights && !servo.has_turning_axes() {
+                let (chain, space) = (servo.chain.clone(), servo.space.clone());
+                let edge = LoopEdge::new(mechanism, coupled.loops().clone(), chain, space);
+                servo.loop_edge = Some(Box::new(edge));
+            }
             servo.find_actuated_rank()?
         } else {
             let length = servo.options.length;
@@ -303,10 +318,11 @@ impl Servo {
         }
         let rank = self.kept.iter().filter(|kept| **kept).count();
         self.load_secondary(secondary_velocities);
+        self.load_edge_aim(&target, pose);
 
         let (saturation, braking) = match self.store_unlimited_rates(q, rank) {
             Some(braking) => (Saturation::NONE, braking),
-            None => self.store_limited_rates(q, target.pose)?,
+            None => self.store_limited_rates(q)?,
         };
 
         self.note_configuration(q);
@@ -427,6 +443,9 @@ impl Servo {
         }
         if let Some(nearest_pose) = &mut self.nearest_pose {
             nearest_pose.reset();
+        }
+        if let Some(edge) = &mut self.loop_edge {
+            edge.reset();
         }
     }
 

@@ -78,6 +78,11 @@ impl Coupled {
         self.loops.set_weights(weights)
     }
 
+    /// The loops.
+    pub(super) fn loops(&self) -> &LoopMotions {
+        &self.loops
+    }
+
     /// Number of actuated joints: the size of y.
     pub(super) fn actuated_joints(&self) -> usize {
         self.loops.actuated
@@ -348,7 +353,8 @@ mod tests {
             coupled.coupling.expand(&coupled.coupling.primary, &mut found);
             let problem = Problem { j: &reduced, ..problem };
             let mut saturator = Saturator::new(6, actuated, Some(panda.n()));
-            let saturation = saturator.apply_coupled(problem, &mut coupled.coupling, &mut found);
+            let saturation =
+                saturator.apply_coupled(problem, &mut coupled.coupling, None, &mut found);
             assert_eq!(saturation.direction_lost, expected.direction_lost);
             assert!(found.iter().zip(&bounds).all(|(r, b)| b.contains(*r)));
             let left = |rates: &[f64]| -> f64 {

@@ -93,9 +93,13 @@ impl Curvature for Edge<'_> {
         curvature_into((self.chain, self.space), self.hessian, left, out);
     }
 
-    fn share(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {
+    fn share(&mut self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {
         let (columns, limits, dt) = (&self.space.columns, self.limits, self.dt);
-        match self.way.and_then(|known| self.time(known, rates, gradient)) {
+        let time = |known: &[f64]| {
+            let along = (dot(gradient, known), dot(gradient, rates));
+            time_to_nearest((known, rates), along, columns, limits)
+        };
+        match self.way.and_then(time) {
             Some(time) => {
                 approach::scale(rates.iter().map(|r| time * r), rates, columns, limits, dt)
             }
@@ -104,22 +108,23 @@ impl Curvature for Edge<'_> {
     }
 }
 
-impl Edge<'_> {
-    /// The time t at these velocities until the nearest pose, where one of its ways leads on.
-    fn time(&self, way: &[f64], rates: &[f64], gradient: &[f64]) -> Option<f64> {
-        let (mut ahead, mut all) = (0.0, 0.0);
-        for (((way, rate), column), limits) in
-            way.iter().zip(rates).zip(&self.space.columns).zip(self.limits)
-        {
-            // A joint that stops at once has no share.
-            let weight = if *column == 0.0 { 0.0 } else { column / limits.acceleration };
-            let (way, rate) = (weight * way, weight * rate);
-            ahead += if way * rate > 0.0 { way * way } else { 0.0 };
-            all += rate * rate;
-        }
-        let (along, of_all) = (dot(gradient, way), dot(gradient, rates));
-        let of_task = if along > 0.0 && of_all > 0.0 { along / of_all } else { f64::INFINITY };
-        let time = of_task.min((ahead / all).sqrt());
-        (time > 0.0 && time < f64::INFINITY).then_some(time)
+/// The time t at these velocities until the nearest pose, where one of its ways leads on; `along` are
+/// g w and g y'.
+pub(super) fn time_to_nearest(
+    (way, rates): (&[f64], &[f64]),
+    (along, of_all): (f64, f64),
+    columns: &[f64],
+    limits: &[Limits],
+) -> Option<f64> {
+    let (mut ahead, mut all) = (0.0, 0.0);
+    for (((way, rate), column), limits) in way.iter().zip(rates).zip(columns).zip(limits) {
+        // A joint that stops at once has no share.
+        let weight = if *column == 0.0 { 0.0 } else { column / limits.acceleration };
+        let (way, rate) = (weight * way, weight * rate);
+        ahead += if way * rate > 0.0 { way * way } else { 0.0 };
+        all += rate * rate;
     }
+    let of_task = if along > 0.0 && of_all > 0.0 { along / of_all } else { f64::INFINITY };
+    let time = of_task.min((ahead / all).sqrt());
+    (time > 0.0 && time < f64::INFINITY).then_some(time)
 }

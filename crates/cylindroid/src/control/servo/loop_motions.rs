@@ -14,7 +14,7 @@ use crate::closure::{ActuationMap, CoordinatePartitioning, LoopClosureError, ass
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
 use crate::error::{Error, Result};
 use crate::linalg::Matrix;
-use crate::model::{Coordinate, Limits, Mechanism};
+use crate::model::{Limits, Mechanism};
 use crate::tolerance::{MIN_ACTUATED_SHARE, NEARLY_CLOSED};
 
 /// Steps of Newton's method that close a measured configuration: from loops open by
@@ -73,6 +73,10 @@ impl LoopMotions {
             actuated_step: vec![0.0; velocities],
             rates: vec![0.0; velocities],
         })
+    }
+
+    pub(super) fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
     }
 
     /// Number of coordinates and actuated loop joints.
@@ -158,9 +162,7 @@ impl LoopMotions {
 
     /// Memory to fit positions of more coordinates than the actuated ones.
     pub(super) fn sensor_fit(&self) -> SensorFit {
-        let reach = self.mechanism.reach();
-        let scale = |c: &Coordinate| if c.kind.is_length() { 1.0 / reach } else { 1.0 };
-        let scales = self.mechanism.coordinates().iter().map(scale).collect();
+        let scales = (0..self.q.len()).map(|i| 1.0 / self.mechanism.unit_of(i)).collect();
         SensorFit::new(scales, self.actuated, self.velocities() - self.q.len())
     }
 
@@ -267,11 +269,7 @@ impl LoopMotions {
     ) {
         let share = if self.is_regular { self.partitioning.least_share() } else { 0.0 };
         let share = share.max(MIN_ACTUATED_SHARE);
-        let coordinate = self.mechanism.coordinates().get(i);
-        let size = match coordinate {
-            Some(c) if c.kind.is_length() => self.mechanism.reach(),
-            _ => 1.0,
-        };
+        let size = self.mechanism.unit_of(i);
         // The share is about the angle to the singularity; passive joints are 1 / share times as fast
         // as actuated ones.
         let way = 0.5 * share;

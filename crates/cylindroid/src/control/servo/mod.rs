@@ -16,6 +16,7 @@ mod inertia_weights;
 mod inverse_choice;
 mod jerk_limited_stop;
 mod limits;
+mod loop_edge;
 mod loop_motions;
 mod named_inverse;
 mod nearest_pose;

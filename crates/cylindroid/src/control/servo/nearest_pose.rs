@@ -22,15 +22,25 @@ use crate::spatial::Pose;
 use crate::task::Task;
 
 /// Newton steps in a step of the servo.
-const STEPS: usize = 3;
+pub(super) const STEPS: usize = 3;
 /// Largest change of a joint in one of them [rad, or characteristic lengths].
-const LONGEST: f64 = 0.4;
+pub(super) const LONGEST: f64 = 0.4;
 /// Halvings of a step.
-const HALVINGS: usize = 6;
+pub(super) const HALVINGS: usize = 6;
 /// A step below this share of the way that is left has arrived [-].
-const ARRIVED: f64 = 0.02;
+pub(super) const ARRIVED: f64 = 0.02;
 /// A step below this has arrived as well [rad, or characteristic lengths].
-const SHORT: f64 = 1e-6;
+pub(super) const SHORT: f64 = 1e-6;
+
+/// A pose towards which a motion ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeAim {
+    pub(super) pose: Pose,
+    /// Velocity for an error of 1 [1/s].
+    pub(super) gain: f64,
+    /// True where no configuration reaches it.
+    pub(super) is_out_of_reach: bool,
+}
 
 /// The task, its limits, and memory of the servo.
 pub(super) struct Surroundings<'a> {
@@ -50,12 +60,15 @@ pub(super) struct NearestPose {
     q: Vec<f64>,
     start: Vec<f64>,
     is_known: bool,
+    /// Squared error at the nearest pose.
+    far: f64,
     jacobian: Matrix,
     error: Vec<f64>,
     newton: NewtonStep,
     step: Vec<f64>,
     /// From the present configuration, scaled.
     way: Vec<f64>,
+    has_way: bool,
 }
 
 impl NearestPose {
@@ -71,11 +84,13 @@ impl NearestPose {
             q: vec![0.0; all.len()],
             start: vec![0.0; all.len()],
             is_known: false,
+            far: 0.0,
             jacobian: Matrix::zeros(m, n),
             error: vec![0.0; m],
             newton: NewtonStep::new(m, n),
             step: vec![0.0; n],
             way: vec![0.0; n],
+            has_way: false,
         })
     }
 
@@ -84,15 +99,25 @@ impl NearestPose {
         self.is_known = false;
     }
 
+    /// The way there from the last configuration (scaled), once it is found.
+    pub(super) fn known_way(&self) -> Option<&[f64]> {
+        self.has_way.then_some(&*self.way)
+    }
+
+    /// The error that is left at the nearest pose.
+    pub(super) fn left(&self) -> f64 {
+        self.far.sqrt()
+    }
+
     /// Moves on towards the nearest pose from the present configuration `q`, whose squared error is
-    /// `present`; the way there (scaled) once it is found.
-    pub(super) fn way(
+    /// `present`.
+    pub(super) fn search(
         &mut self,
         q: &[f64],
         target: Pose,
         present: f64,
         around: &mut Surroundings<'_>,
-    ) -> Option<&[f64]> {
+    ) {
         let mut far = if self.is_known { self.load(target, around) } else { f64::INFINITY };
         // The servo has found a better one.
         if !(far <= present) {
@@ -107,13 +132,14 @@ impl NearestPose {
             }
             moved = self.advance(target, &mut far, around);
         }
+        self.far = far;
         let mut left = 0.0_f64;
         for (i, (way, &c)) in self.way.iter_mut().zip(self.chain.coordinates()).enumerate() {
             let change = self.q[c] - q[c];
             left = left.max(change.abs() / self.sizes[i]);
             *way = around.space.scaled_rate(i, change);
         }
-        (moved <= SHORT.max(ARRIVED * left)).then_some(&self.way)
+        self.has_way = moved <= SHORT.max(ARRIVED * left);
     }
 
     /// One step; the largest change of a joint.

@@ -142,8 +142,7 @@ pub(in crate::control) struct Saturator {
     /// d of the last changed direction.
     #[cfg(test)]
     damping: f64,
-    /// For trees.
-    curved: Option<Box<Curved>>,
+    curved: Box<Curved>,
     /// Zero rates.
     rest: Vec<f64>,
     /// Those that the secondary motion adds.
@@ -155,11 +154,11 @@ impl Saturator {
     /// of a closed chain depend.
     pub(in crate::control) fn new(m: usize, n: usize, rates: Option<usize>) -> Self {
         let inequalities = Inequalities::new(n, rates.is_none(), rates.unwrap_or(0));
-        let (is_tree, rates) = (rates.is_none(), rates.unwrap_or(n));
+        let rates = rates.unwrap_or(n);
         Self {
             set: ActiveSet::new(n, inequalities),
             task: Level::new(m, n),
-            curved: is_tree.then(|| Box::new(Curved::new(m, n))),
+            curved: Box::new(Curved::new(m, n)),
             #[cfg(test)]
             damping: 0.0,
             rest: vec![0.0; rates],
@@ -200,11 +199,14 @@ impl Saturator {
         &mut self,
         p: Problem<'_>,
         coupling: &mut Coupling,
+        curvature: Option<(&mut dyn Curvature, Path)>,
         rates: &mut [f64],
     ) -> Saturation {
         coupling.expand(&coupling.secondary, &mut self.more);
-        if let Some((saturation, primary, secondary)) =
-            self.scale_down(&p, rates, Some(&coupling.primary))
+        let is_curved = matches!(curvature, Some((_, Path::Curved)));
+        if !is_curved
+            && let Some((saturation, primary, secondary)) =
+                self.scale_down(&p, rates, Some(&coupling.primary))
         {
             let both = coupling.primary.iter().zip(&coupling.secondary);
             for (y, (a, b)) in coupling.actuation.iter_mut().zip(both) {
@@ -219,7 +221,7 @@ impl Saturator {
             inequalities.lower[i] = bound.lower;
             inequalities.upper[i] = bound.upper;
         }
-        let found = self.solve(&p, &coupling.last, &coupling.primary, None);
+        let found = self.solve(&p, &coupling.last, &coupling.primary, curvature);
         let Some(saturation) = found else {
             brake(&p, rates);
             coupling.actuation.fill(0.0);
@@ -298,11 +300,11 @@ impl Saturator {
         if !self.set.start(last) {
             return None;
         }
-        match (&mut self.curved, curvature) {
-            (Some(curved), Some((curvature, _))) => {
-                curved.solve(&mut self.set, &mut self.task, p, curvature);
+        match curvature {
+            Some((curvature, _)) => {
+                self.curved.solve(&mut self.set, &mut self.task, (p, last), curvature);
             }
-            _ => self.change_direction(p, last),
+            None => self.change_direction(p, last),
         }
         Some(Saturation { scale: 0.0, direction_lost: true })
     }

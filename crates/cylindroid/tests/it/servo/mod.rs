@@ -1,6 +1,7 @@
 //! The servo: laws, limits, stalls, secondary tasks.
 
 mod braking_path;
+mod closed_edges;
 mod closed_tasks;
 mod condition;
 mod edge;

@@ -281,3 +281,39 @@ fn stall_names_a_joint_that_rests_at_its_limit() {
         }
     }
 }
+
+/// A slide near its limit is at it by the same share of the arm's length in every unit of length.
+#[test]
+fn stall_at_a_slide_depends_on_no_unit() {
+    let verdict = |size: f64, gap: f64| {
+        let mut builder = Mechanism::builder("slide");
+        let (lower, upper, acceleration) = (-0.5 * size, 0.2 * size, 20.0 * size);
+        let slide = Limits { lower, upper, acceleration, ..Limits::NONE };
+        for (name, kind, parent, x, limits) in [
+            ("pan", JointKind::Revolute, "base", 0.0, Limits::NONE),
+            ("slide", JointKind::Prismatic, "pan_link", 0.4, slide),
+        ] {
+            builder.joint(JointSpec {
+                axis: if name == "pan" { Vec3::Z } else { Vec3::X },
+                parent_from_joint: Pose::from_translation(Vec3::X * (x * size)),
+                limits,
+                ..JointSpec::new(name, kind, parent, &format!("{name}_link"))
+            });
+        }
+        builder.frame("tool", "slide_link", Pose::from_translation(Vec3::X * (0.3 * size)));
+        builder.tool("tool");
+        let robot = builder.build().unwrap();
+        let mut servo = servo(&robot, |o| {
+            o.task = Task::named("x,y", &robot).unwrap();
+            (o.dt, o.joint_weights) = (1e-5, vec![1.0, 1.0 / (size * size)]);
+        });
+        let q = [0.3, (0.2 - gap) * size];
+        let target = Vec3::new(0.3_f64.cos(), 0.3_f64.sin(), 0.0) * (1.1 * size);
+        servo.step(&q, Pose::from_translation(target)).unwrap();
+        servo.stall()
+    };
+    for size in [1e-3, 1.0, 1e3] {
+        assert_eq!(verdict(size, 1e-8), Stall::Limits { coordinates: vec![1] }, "{size}");
+        assert_eq!(verdict(size, 5e-4), Stall::Slow, "{size}");
+    }
+}

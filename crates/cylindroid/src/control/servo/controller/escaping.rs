@@ -11,17 +11,12 @@ use super::Servo;
 use crate::control::solver::saturation::{FED_FORWARD, Saturation};
 use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
-use crate::spatial::Pose;
 
 impl Servo {
     /// Bounds, computes and stores the joint velocities.
-    pub(super) fn store_limited_rates(
-        &mut self,
-        q: &[f64],
-        target: Pose,
-    ) -> Result<(Saturation, BrakingState)> {
+    pub(super) fn store_limited_rates(&mut self, q: &[f64]) -> Result<(Saturation, BrakingState)> {
         self.load_bounds();
-        let mut saturation = self.saturate(q, target)?;
+        let mut saturation = self.saturate(q)?;
         Error::check_finite("joint velocities", &self.primary)?;
         let share = self.progress();
         if share.is_some() && self.escape() {

@@ -6,18 +6,17 @@ use super::super::approach;
 use super::super::edge::Edge;
 use super::super::escape::FOLD;
 use super::super::limits::{JointState, acceleration_of};
-use super::super::nearest_pose::Surroundings;
+use super::super::loop_edge::{LoopCurvature, LoopSurroundings};
 use super::super::options::SecondaryNullSpace;
-use super::super::projection::TaskProjection;
 use super::super::secondary::Context;
 use super::super::stall::BrakingState;
 use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::VelocityBounds;
-use crate::control::solver::saturation::{Path, Problem, Saturation, brake, solve};
+use crate::control::solver::saturation::{Curvature, Path, Problem, Saturation, brake, solve};
 use crate::error::Result;
-use crate::linalg::{RowSpace, dot};
+use crate::linalg::RowSpace;
 use crate::spatial::{Pose, Twist};
 use crate::tolerance::AT_LIMIT;
 
@@ -135,44 +134,46 @@ impl Servo {
     }
 
     /// Bounds the primary and secondary velocities of a step from `q`.
-    pub(super) fn saturate(&mut self, q: &[f64], target: Pose) -> Result<Saturation> {
+    pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
         for i in 0..self.last.len() {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
+        let ends_at_the_edge = self.search_edge(q)?;
         let gain = self.options.gain.position.min(self.options.gain.orientation);
-        let ends_at_the_edge = self.ends_at_the_edge();
-        let error = &self.projected_error;
+        let (gain, error) = match self.edge_aim {
+            Some(aim) if ends_at_the_edge => (aim.gain, &self.edge_error),
+            _ => (gain, &self.projected_error),
+        };
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
+        let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };
         let Some(coupled) = &mut self.coupled else {
-            let is_whole = self.options.projection == TaskProjection::Orthogonal;
-            let way = match &mut self.nearest_pose {
-                Some(nearest_pose) if ends_at_the_edge && is_whole => {
-                    let mut around = Surroundings {
-                        task: self.options.task,
-                        space: &mut self.space,
-                        limits: &self.limits,
-                        hessian: &mut self.hessian,
-                    };
-                    nearest_pose.way(q, target, dot(error, error), &mut around)
-                }
-                _ => None,
-            };
+            let way = self.nearest_pose.as_ref().and_then(|nearest| nearest.known_way());
             let mut edge = Edge {
                 chain: &self.chain,
                 space: &self.space,
                 limits: &self.limits,
                 dt: self.options.dt,
                 hessian: &mut self.hessian,
-                way,
+                way: way.filter(|_| ends_at_the_edge),
             };
             let (secondary, rates) = (&self.secondary, &mut self.primary);
-            let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };
             return Ok(self.saturator.apply(problem, secondary, Some((&mut edge, path)), rates));
         };
         coupled.load_last(&self.rates, &self.space);
-        let mut saturation =
-            self.saturator.apply_coupled(problem, &mut coupled.coupling, &mut self.primary);
+        let around =
+            LoopSurroundings { task: self.options.task, limits: &self.limits, dt: self.options.dt };
+        let mut edge = match &mut self.loop_edge {
+            Some(edge) if ends_at_the_edge => Some(LoopCurvature { edge, around }),
+            _ => None,
+        };
+        let curvature = edge.as_mut().map(|edge| (edge as &mut dyn Curvature, path));
+        let mut saturation = self.saturator.apply_coupled(
+            problem,
+            &mut coupled.coupling,
+            curvature,
+            &mut self.primary,
+        );
         self.approaches_type_ii =
             coupled.approaches_type_ii(&self.primary, &self.space, self.options.dt)?;
         if self.approaches_type_ii {
@@ -240,7 +241,7 @@ impl Servo {
     /// effect, if one may, or if not all directions are kept.
     pub(super) fn store_unlimited_rates(&mut self, q: &[f64], rank: usize) -> Option<BrakingState> {
         let is_regular = rank == self.kept.len() && self.singular_ratio() >= FOLD;
-        if !is_regular || self.coupled.is_some() || self.ends_at_the_edge() {
+        if !is_regular || self.coupled.is_some() || self.edge_aim.is_some() {
             return None;
         }
         let scaled = self.primary.iter().zip(&self.secondary).zip(&self.space.columns);
@@ -278,12 +279,6 @@ impl Servo {
         self.distance > self.length + self.offset_of_free_position()
     }
 
-    /// True for a motion of a tree that no straight line ends: its joints must stop at the nearest
-    /// pose, which they see in time only with the curvature of the task.
-    fn ends_at_the_edge(&self) -> bool {
-        self.accelerates && self.coupled.is_none() && self.is_out_of_reach()
-    }
-
     /// The bounds of the next joint velocities, in weighted coordinates.
     pub(super) fn load_bounds(&mut self) {
         let coupled = self.coupled.as_ref();
@@ -311,7 +306,7 @@ impl Servo {
     }
 
     /// Index of the velocity of the i-th joint of the servo among those of all joints.
-    fn place(&self, i: usize) -> usize {
+    pub(super) fn place(&self, i: usize) -> usize {
         self.chain.coordinates().get(i).copied().unwrap_or(i)
     }
 
@@ -362,10 +357,9 @@ impl Servo {
                     self.task.column(i).iter().zip(rest).map(|(a, r)| a * r).sum()
                 }
             };
-            let above =
-                l.upper - q < AT_LIMIT && (bound.upper - rate) * step < AT_LIMIT && pull > least;
-            let below =
-                q - l.lower < AT_LIMIT && (rate - bound.lower) * step < AT_LIMIT && pull < -least;
+            let near = AT_LIMIT * self.mechanism.unit_of(c);
+            let above = l.upper - q < near && (bound.upper - rate) * step < near && pull > least;
+            let below = q - l.lower < near && (rate - bound.lower) * step < near && pull < -least;
             if !self.space.is_locked(i) && (above || below) {
                 self.at_limit.push(c);
             }

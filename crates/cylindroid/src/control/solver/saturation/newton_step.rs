@@ -70,7 +70,7 @@ impl NewtonStep {
     }
 
     /// Writes the triangular rows, n x n, with the unknowns in their order.
-    pub(super) fn rows_into(&self, rows: &mut Matrix) {
+    pub(in crate::control) fn rows_into(&self, rows: &mut Matrix) {
         for (k, &j) in self.elimination.order().iter().enumerate() {
             let column = rows.column_mut(j);
             column.fill(0.0);
@@ -79,7 +79,7 @@ impl NewtonStep {
     }
 
     /// The right side of these rows.
-    pub(super) fn right_side(&self, right_side: usize) -> &[f64] {
+    pub(in crate::control) fn right_side(&self, right_side: usize) -> &[f64] {
         let n = self.ordered.len();
         &self.stacked.column(n + right_side)[..n]
     }

@@ -1,0 +1,129 @@
+//! The pose towards which a motion ends, where the joints must stop if it is out of reach.
+//!
+//! Formula  the target; of a twist v, the tool moved by s T v, T = 1 / gain + max |v_i| / A_i, in which
+//!          all joints stop, s the share of v within the speeds of the joints
+//! Units    s, scaled task coordinates
+//! Why so   a twist has no end. Joints with small acceleration limits must brake before the edge of
+//!          the workspace, or they swing through it
+//! Checked  tests/it/servo/edge.rs, tests/it/servo/closed_edges.rs, tests/it/servo/twist.rs
+
+use super::super::loop_edge::LoopSurroundings;
+use super::super::nearest_pose::{EdgeAim, Surroundings};
+use super::super::projection::TaskProjection;
+use super::super::step::{Aim, Target};
+use super::Servo;
+use crate::control::solver::saturation::FED_FORWARD;
+use crate::error::Result;
+use crate::kinematics::ReferenceFrame;
+use crate::linalg::{dot, norm};
+use crate::spatial::Pose;
+
+/// A pose is out of reach if a larger share of its error is left at the nearest one [-]: more than
+/// where the search of one in reach has nearly arrived.
+const LEFT: f64 = 0.1;
+
+/// Errors below this are those of poses in reach (scaled) [-].
+const NONE_LEFT: f64 = 1e-5;
+
+/// Velocities of joints this many times as large as that of the task approach an edge (scaled) [-].
+const AMPLIFIED: f64 = 3.0;
+
+impl Servo {
+    /// True if the components of the task turn with the tool.
+    pub(super) fn has_turning_axes(&self) -> bool {
+        self.options.task.axes == ReferenceFrame::Local
+    }
+
+    /// Finds the pose towards which the motion of this step ends, if joints must brake before it.
+    pub(super) fn load_edge_aim(&mut self, target: &Target, pose: Pose) {
+        self.edge_aim = None;
+        let is_out_of_reach = self.coupled.is_none() && self.is_out_of_reach();
+        let is_coupled = self.coupled.is_some();
+        if is_coupled && self.loop_edge.is_none() {
+            return;
+        }
+        let gain = self.options.gain.position.min(self.options.gain.orientation);
+        let is_fed_forward = norm(&self.x) > FED_FORWARD * gain * norm(&self.projected_error);
+        let is_weak = self.size_of_rates() > AMPLIFIED * norm(&self.x);
+        let is_near = is_weak || self.kept.iter().any(|kept| !kept);
+        // Closed chains swing at the edge without acceleration limits too.
+        if !(self.accelerates || is_coupled && is_near) {
+            return;
+        }
+        if is_fed_forward {
+            // Tasks beyond the motions of an arm have no edge.
+            if self.generic_rank < self.x.len() || !is_near {
+                return;
+            }
+            let stops = self.rates.iter().zip(0..).fold(0.0_f64, |most, (rate, i)| {
+                let limits = self.chain.coordinates().iter().position(|c| *c == i);
+                let a = limits.map_or(f64::INFINITY, |i| self.limits[i].acceleration);
+                most.max(rate.abs() / a)
+            });
+            let time = 1.0 / gain + stops;
+            let slowed = self.share_within_speeds(is_coupled);
+            let aim = Aim::Target(Target { pose, ..*target });
+            let Aim::Target(ahead) = aim.after(slowed * time) else {
+                return;
+            };
+            let error = self.options.task.seen(pose, pose.error_to(ahead.pose));
+            self.space.scale(error, &mut self.edge_error);
+            self.step_projection.apply(&mut self.edge_error);
+            self.edge_aim =
+                Some(EdgeAim { pose: ahead.pose, gain: 1.0 / time, is_out_of_reach: false });
+        } else if is_out_of_reach || is_coupled {
+            self.edge_error.copy_from_slice(&self.projected_error);
+            self.edge_aim = Some(EdgeAim { pose: target.pose, gain, is_out_of_reach });
+        }
+    }
+
+    /// The norm of the unbounded joint velocities, lengths over that of the mechanism.
+    fn size_of_rates(&self) -> f64 {
+        let unit = |i: usize| self.mechanism.unit_of(self.place(i));
+        let rates = self.primary.iter().zip(&self.space.columns).enumerate();
+        rates.map(|(i, (rate, column))| (rate * column / unit(i)).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// The share of the task within the speeds of the joints: of closed chains as fast as where the task
+    /// is no more weak, of arms, whose self-motions swing on longer ways, as fast as here.
+    fn share_within_speeds(&self, is_coupled: bool) -> f64 {
+        let most = AMPLIFIED * norm(&self.x);
+        let scaled = self.primary.iter().zip(&self.space.columns).zip(&self.limits).enumerate();
+        scaled.fold(1.0, |share, (i, ((rate, column), limits))| {
+            let unit = self.mechanism.unit_of(self.place(i));
+            let speed = if is_coupled { most * unit } else { column * rate.abs() };
+            if speed > 0.0 { f64::min(share, limits.velocity / speed) } else { share }
+        })
+    }
+
+    /// Searches the nearest pose; true if it is the end of the motion.
+    pub(super) fn search_edge(&mut self, q: &[f64]) -> Result<bool> {
+        let Some(aim) = self.edge_aim else { return Ok(false) };
+        let is_whole = self.options.projection == TaskProjection::Orthogonal;
+        let present = dot(&self.edge_error, &self.edge_error);
+        let least = NONE_LEFT.max(LEFT * present.sqrt());
+        match (&self.coupled, &mut self.loop_edge, &mut self.nearest_pose) {
+            (Some(coupled), Some(edge), _) if is_whole => {
+                let around = LoopSurroundings {
+                    task: self.options.task,
+                    limits: &self.limits,
+                    dt: self.options.dt,
+                };
+                let here = (coupled.q(), &coupled.coupling.motions, &self.task);
+                Ok(edge.search(here, aim.pose, present, around)? && edge.left() > least)
+            }
+            (None, _, Some(nearest_pose)) if is_whole => {
+                let mut around = Surroundings {
+                    task: self.options.task,
+                    space: &mut self.space,
+                    limits: &self.limits,
+                    hessian: &mut self.hessian,
+                };
+                nearest_pose.search(q, aim.pose, present, &mut around);
+                let is_found = nearest_pose.known_way().is_some() && nearest_pose.left() > least;
+                Ok(aim.is_out_of_reach || is_found)
+            }
+            _ => Ok(aim.is_out_of_reach),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Closed chains pushed beyond their workspace, and arms pushed outwards by twists: with any acceleration
+//! limits they come to rest there once, and say why.
+
+use cylindroid::closure::assemble;
+use cylindroid::control::TwistStatus;
+use cylindroid::model::{Dimension, JointLimits};
+
+use super::*;
+
+/// What pushes outwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Push {
+    /// A target twice the length of the mechanism away.
+    Target,
+    /// A target that moves away with a tenth of that length per second.
+    MovingTarget,
+    /// A twist of this speed.
+    Twist,
+    /// The same fed forward beside the present pose.
+    FedForward,
+}
+
+impl Push {
+    const ALL: [Self; 4] = [Self::Target, Self::MovingTarget, Self::Twist, Self::FedForward];
+}
+
+/// A motion to the edge of the workspace; lengths are over that of the mechanism.
+#[derive(Debug)]
+struct ToTheEdge {
+    /// Time until the stall is named for good (s).
+    time: f64,
+    /// Motion backwards.
+    back: f64,
+    /// Reversals of more than 1e-4.
+    turns: usize,
+    stall: Option<Stall>,
+}
+
+/// A model of the catalogue whose actuated joints have this acceleration limit.
+fn weakened(name: &str, acceleration: f64) -> Mechanism {
+    let robot = catalogue::load(name).unwrap();
+    let weak = JointLimits { acceleration: Some(acceleration), ..JointLimits::default() };
+    let is_actuated = |i: usize| robot.coordinates().iter().any(|c| c.joint == i && c.actuated);
+    let joints = robot.joints().iter().enumerate();
+    let joints = joints.filter(|(i, joint)| is_actuated(*i) && joint.mimic.is_none());
+    let limits: Vec<_> = joints.map(|(_, joint)| (joint.name.clone(), weak)).collect();
+    robot.with_limits(&limits).unwrap()
+}
+
+/// From an assembled configuration near `start`, positions alone, `seconds` at most.
+fn to_the_edge(
+    (robot, start): (&Mechanism, &[f64]),
+    push: Push,
+    direction: Vec3,
+    dt: f64,
+    seconds: f64,
+) -> ToTheEdge {
+    let mut servo = servo(robot, |o| {
+        o.dt = dt;
+        let planar = o.task == Task::PLANAR;
+        let components = [true, true, !planar, false, false, false];
+        o.task = Task { components, ..Task::POSE };
+    });
+    let end_effector = servo.options().end_effector;
+    let mut q =
+        if robot.is_closed() { assemble(robot, start, &[]).unwrap().q } else { start.into() };
+    let home = robot.state(&q).unwrap().pose(end_effector).unwrap();
+    let (reach, speed) = (robot.reach(), direction * (0.1 * robot.reach()));
+    let mut motion = ToTheEdge { time: f64::INFINITY, back: 0.0, turns: 0, stall: None };
+    let (mut last, mut extreme, mut forwards) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 1.0);
+    for i in 0..(seconds / dt) as usize {
+        let time = i as f64 * dt;
+        let twist = Twist { linear: speed, angular: Vec3::ZERO };
+        let beyond = |way: Vec3| Pose { translation: home.translation + way, ..home };
+        let (pose, error, is_stalled) = if push == Push::Twist {
+            let step = servo.step_twist(&q, Some(twist)).unwrap();
+            (step.step.pose, 0.0, step.status == TwistStatus::Stalled)
+        } else {
+            let target = match push {
+                Push::Target => beyond(direction * (2.0 * reach)).into(),
+                Push::MovingTarget => beyond(speed * time).into(),
+                _ => {
+                    let pose = robot.state(&q).unwrap().pose(end_effector).unwrap();
+                    Target { pose, feed_forward: twist }
+                }
+            };
+            let step = servo.step(&q, target).unwrap();
+            (step.pose, step.position_error, step.status == Status::Stalled)
+        };
+        servo.advance(&mut q);
+        let way = match push {
+            Push::Target => -error / reach,
+            _ => (pose.translation - home.translation).dot(direction) / reach,
+        };
+        motion.back += if last.is_finite() { (last - way).max(0.0) } else { 0.0 };
+        last = way;
+        if i == 0 || forwards * (way - extreme) > 0.0 {
+            extreme = way;
+        } else if forwards * (extreme - way) > 1e-4 {
+            (extreme, forwards) = (way, -forwards);
+            motion.turns += 1;
+        }
+        if !is_stalled {
+            (motion.time, motion.stall) = (f64::INFINITY, None);
+        } else if motion.stall.is_none() {
+            (motion.time, motion.stall) = (time, Some(servo.stall()));
+        } else if time > motion.time + 1.0 {
+            break;
+        }
+    }
+    motion
+}
+
+fn directions(robot: &Mechanism) -> [Vec3; 5] {
+    let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z];
+    match robot.dimension() {
+        Dimension::Planar => [x, -x, y, -y, Vec3::new(0.6, 0.8, 0.0)],
+        Dimension::Spatial => [x, y, z, -z, Vec3::new(0.48, -0.36, 0.8)],
+    }
+}
+
+const CLOSED: [&str; 6] = ["five-bar", "3rrr", "stewart", "delta", "3rps", "two-arm"];
+
+/// For the weakest and the strongest drives, with less than a millimetre backwards for each metre of
+/// the mechanism.
+#[test]
+fn closed_chains_come_to_rest_at_the_edge_of_their_workspace() {
+    for (name, place, push) in [
+        ("five-bar", 0, Push::Target),
+        ("five-bar", 0, Push::Twist),
+        ("3rrr", 3, Push::Target),
+        ("3rrr", 3, Push::Twist),
+        ("3rrr", 3, Push::FedForward),
+        ("delta", 2, Push::Target),
+        ("delta", 2, Push::Twist),
+        ("delta", 2, Push::MovingTarget),
+        ("stewart", 4, Push::Target),
+        ("two-arm", 0, Push::Twist),
+    ] {
+        for acceleration in [0.5, 5.0, 40.0, f64::INFINITY] {
+            let robot = weakened(name, acceleration);
+            let direction = directions(&robot)[place];
+            let motion = to_the_edge((&robot, robot.home()), push, direction, 1e-2, 30.0);
+            let case = format!("{name} {direction:?} {push:?} at {acceleration}: {motion:?}");
+            println!("{case}");
+            assert!(motion.stall.is_some() && motion.time < 20.0, "{case}");
+            assert!(motion.turns <= 4 && motion.back < 1e-3, "{case}");
+        }
+    }
+}
+
+/// Twists along the line from the base through the tool, at weak joints and strong ones.
+#[test]
+fn arms_pushed_outwards_by_a_twist_come_to_rest() {
+    for name in ["panda", "ur5e", "iiwa14", "puma560", "youbot", "3r"] {
+        for acceleration in [0.5, 2.0, 10.0] {
+            let robot = weakened(name, acceleration);
+            let start: Vec<f64> =
+                robot.home().iter().zip(0..).map(|(x, i)| x + 0.1 + 0.02 * f64::from(i)).collect();
+            let pose = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
+            let direction = pose.translation.unit(1e-9).unwrap();
+            for push in [Push::Twist, Push::FedForward] {
+                let motion = to_the_edge((&robot, &start), push, direction, 1e-2, 30.0);
+                let case = format!("{name} {push:?} at {acceleration} rad/s^2: {motion:?}");
+                println!("{case}");
+                assert!(motion.stall.is_some(), "{case}");
+                assert!(motion.turns <= 4 && motion.back < 1e-3, "{case}");
+            }
+        }
+    }
+}
+
+/// All closed chains, pushes, directions and accelerations: a line for each motion that moves back, names
+/// no stall, or takes more than 1.5 times as long as without acceleration limits.
+#[test]
+#[ignore = "a table of minutes"]
+fn table_of_closed_chains_at_the_edge() {
+    let pushes = CLOSED.iter().flat_map(|n| Push::ALL.map(|p| (n, p)));
+    for (dt, (name, push)) in
+        [1e-2, 2e-3, 5e-4].iter().flat_map(|dt| pushes.clone().map(move |p| (dt, p)))
+    {
+        let (mut motions, mut counts) = (0, [0; 3]);
+        for direction in directions(&catalogue::load(name).unwrap()) {
+            let mut free = f64::INFINITY;
+            for acceleration in [f64::INFINITY, 40.0, 10.0, 5.0, 1.0, 0.5] {
+                let robot = weakened(name, acceleration);
+                let motion = to_the_edge((&robot, robot.home()), push, direction, *dt, 40.0);
+                if acceleration == f64::INFINITY {
+                    free = motion.time;
+                }
+                let faults = [motion.back > 1e-3, motion.stall.is_none(), motion.time > 1.5 * free];
+                motions += 1;
+                counts
+                    .iter_mut()
+                    .zip(faults)
+                    .for_each(|(count, fault)| *count += usize::from(fault));
+                if faults.contains(&true) {
+                    let stall = motion.stall.as_ref().map_or("none", Stall::name);
+                    println!(
+                        "{name} {push:?} {direction:?}, {acceleration} rad/s^2, {dt} s: {:.2} s ({free:.2} s), \
+                         {:.5} back, {} turns, {stall}",
+                        motion.time, motion.back, motion.turns
+                    );
+                }
+            }
+        }
+        let [back, silent, slow] = counts;
+        println!(
+            "{name} {push:?}, {dt} s: of {motions} motions {back} move back by more than 1e-3, {silent} name \
+             no stall, {slow} take longer"
+        );
+    }
+}
