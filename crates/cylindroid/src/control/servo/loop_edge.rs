@@ -135,12 +135,13 @@ impl LoopEdge {
     }
 
     /// Moves on towards the nearest pose from the present configuration `q`, at which M, J and the
-    /// squared error are these; true once its way is found.
+    /// squared error are these; true once its way is found. Errors up to `met` are those of poses in
+    /// reach: there it ends at once.
     pub(super) fn search(
         &mut self,
         (q, motions, reduced): (&[f64], &Matrix, &Matrix),
         target: Pose,
-        present: f64,
+        (present, met): (f64, f64),
         around: LoopSurroundings<'_>,
     ) -> Result<bool> {
         self.here.copy_from_slice(q);
@@ -164,7 +165,7 @@ impl LoopEdge {
         self.is_blocked = false;
         let mut moved = f64::INFINITY;
         for _ in 0..STEPS {
-            if moved <= SHORT {
+            if moved <= SHORT || far <= met * met {
                 break;
             }
             moved = self.advance(target, &mut far, around)?;

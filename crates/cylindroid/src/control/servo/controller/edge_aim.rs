@@ -110,6 +110,7 @@ impl Servo {
                     dt: self.options.dt,
                 };
                 let here = (coupled.q(), &coupled.coupling.motions, &self.task);
+                let present = (present, NONE_LEFT);
                 Ok(edge.search(here, aim.pose, present, around)? && edge.left() > least)
             }
             (None, _, Some(nearest_pose)) if is_whole => {
