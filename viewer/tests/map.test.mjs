@@ -125,6 +125,16 @@ test("a part of a sweep is drawn, coloured and cut; a click on a point moves the
     assert.equal(await page.evaluate(() => /** @type {any} */ (window).viewer.map.cloud.group.children.length), 1, "the empty group of loci");
   }));
 
+test("points relative to a frame say so", () =>
+  visit(["panda"], async (page) => {
+    const words = page.locator('[data-panel="map"]').getByText("Places are relative to link4, not to the world");
+    for (const base of [["--relative-to", "link4"], []]) {
+      await run("sweep", "panda", "--samples", "50", "--frame", "hand_tcp", ...base, "--quantities", "pose", "--out", `relative${base.length}`);
+      await openFiles(page, join(folder, `relative${base.length}/part-000000.parquet`));
+      await words.waitFor({ state: base.length > 0 ? "visible" : "hidden" });
+    }
+  }));
+
 test("the file of a map is drawn in the plane of its mechanism", () =>
   visit(["five-bar"], async (page) => {
     await run("map", "five-bar", "--over", "x=-1:3.5:30", "--over", "y=-2.6:2.6:30", "--out", "map.json");

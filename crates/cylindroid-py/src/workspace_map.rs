@@ -154,8 +154,12 @@ impl PyWorkspaceMap {
 
     fn __repr__(&self) -> String {
         let names: Vec<&str> = self.map.axes.iter().map(|a| a.name.as_str()).collect();
-        let (modes, loci) = (self.map.modes.len(), self.map.loci.len());
-        format!("WorkspaceMap(over {}, {modes} modes, {loci} loci)", names.join(", "))
+        let modes = self.map.modes.len();
+        let loci = match names.len() {
+            3 => format!("{} surfaces", self.map.surfaces.len()),
+            _ => format!("{} loci", self.map.loci.len()),
+        };
+        format!("WorkspaceMap(over {}, {modes} modes, {loci})", names.join(", "))
     }
 }
 

@@ -86,6 +86,7 @@ def test_surfaces_of_three_axes():
     over = {"x": (-0.31, 0.29, 7), "y": (-0.29, 0.33, 7), "rz": (-1.57, 1.53, 9)}
     found = cy.workspace_map(robot, over, starts=16)
     assert found.loci == [] and found.surfaces
+    assert repr(found).endswith(f"{len(found.modes)} modes, {len(found.surfaces)} surfaces)")
     for surface in found.surfaces:
         assert surface["kind"] in ("type II", "passive") and surface["mode"] < len(found.modes)
         vertices, triangles, q = surface["vertices"], surface["triangles"], surface["q"]
@@ -99,7 +100,7 @@ def test_surfaces_of_three_axes():
         assert len(once) == len(sides)
         assert surface["closed"] == all((b, a) in once for a, b in once)
     again = cy.workspace_map(robot, over, starts=16, threads=1)
-    for a, b in zip(found.surfaces, again.surfaces):
+    for a, b in zip(found.surfaces, again.surfaces, strict=True):
         assert all(np.array_equal(a[name], b[name]) for name in ("vertices", "triangles", "q"))
     assert cy.workspace_map(robot, over, starts=2, loci=False).surfaces == []
 

@@ -28,6 +28,8 @@ export class MapPanel {
   private readonly low = h("span", { class: "number" });
   private readonly high = h("span", { class: "number" });
   private readonly clicked = h("p", { class: "note", role: "status" }, HINT);
+  /** Says where the points are not. */
+  private readonly relative = h("p", { class: "note" });
   private readonly number = h("input", { class: "field", type: "number", min: 0, step: 1, "aria-label": "Number of a point" });
   private readonly size = h("input", { type: "range", min: SIZE.least, max: SIZE.most, step: 0.5, value: SIZE.first, "aria-label": "Size of points [pixels]" });
   private readonly place = h("input", { type: "range", step: "any", "aria-label": "Place of the cut [m]" });
@@ -49,6 +51,7 @@ export class MapPanel {
     this.place.addEventListener("input", () => this.move());
     this.number.addEventListener("change", () => this.pickNumber());
     this.panel.body.append(
+      this.relative,
       this.colour.element,
       h("div", { class: "ramp-line" }, this.low, h("span", { class: "ramp" }), this.high),
       h("label", { class: "line" }, h("span", { class: "note" }, "Points"), this.size),
@@ -86,6 +89,9 @@ export class MapPanel {
     this.cloud.show(table, this.size.valueAsNumber);
     if (!table) return;
     this.panel.note(`${table.name}, ${count(table.rows, "point")}`);
+    const base = table.relativeTo;
+    this.relative.hidden = base === null;
+    text(this.relative, base === null ? "" : `Places are relative to ${base}, not to the world: they are drawn as if ${base} were at the world's origin.`);
     const joints = new Set(this.session.scene?.coordinates.map(({ name }) => name));
     const names = [...table.columns.keys()].filter((name) => !NUMBERS.includes(name));
     const first = names.find((name) => !joints.has(name) && !PLACES.includes(name)) ?? "z";

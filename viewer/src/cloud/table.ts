@@ -14,6 +14,8 @@ export type Table = {
   /** Numbers of each column, not a number where a row has none. */
   columns: Map<string, Float64Array>;
   loci: Locus[];
+  /** The frame, which may move, whose axes and origin the places have; null for the world. */
+  relativeTo: string | null;
 };
 
 /** A curve of a map on which the mechanism is singular or at a limit. */
@@ -52,7 +54,7 @@ async function fromParquet(file: File): Promise<Table> {
         for (let i = 0; i < columnData.length; i += 1) column[rowStart + i] = numberOf(columnData[i]);
       },
     });
-    return { name: file.name, rows, columns, loci: [] };
+    return { name: file.name, rows, columns, loci: [], relativeTo: baseOf(metadata.key_value_metadata) };
   } catch (error) {
     throw new Error(`${file.name} is no Parquet file that can be read: ${error instanceof Error ? error.message : String(error)}.`);
   }
@@ -72,7 +74,19 @@ function fromCsv(name: string, text: string): Table | null {
       if (column) column[i - 1] = cell === "" ? NaN : numberOf(cell);
     });
   }
-  return { name, rows: lines.length - 1, columns: named(names, columns), loci: [] };
+  return { name, rows: lines.length - 1, columns: named(names, columns), loci: [], relativeTo: null };
+}
+
+/** The frame from which the poses of a sweep are seen, by what its file says about itself. */
+function baseOf(entries: { key: string; value?: string }[] | undefined): string | null {
+  const about = entries?.find(({ key }) => key === "cylindroid")?.value;
+  if (about === undefined) return null;
+  try {
+    const base = (JSON.parse(about) as Entry | null)?.["relative_to"];
+    return typeof base === "string" ? base : null;
+  } catch {
+    return null; // of another program
+  }
 }
 
 /** Null where it is no table with columns and rows. */
@@ -97,7 +111,7 @@ function fromJson(name: string, text: string): Table | null {
     const place = String(component["name"]);
     if (PLACES.includes(place) && !found.has(place)) found.set(place, new Float64Array(rows.length).fill(numberOf(component["value"])));
   }
-  return { name, rows: rows.length, columns: found, loci: lociOf(list(axes), list(held), list(loci)) };
+  return { name, rows: rows.length, columns: found, loci: lociOf(list(axes), list(held), list(loci)), relativeTo: null };
 }
 
 /** The curves in space: components that are no axis keep what is held, or zero. None where two axes are no places. */

@@ -230,4 +230,15 @@ fn meshes_that_there_are_not() {
         ["map", "panda", "--over", "x=0.4:0.5:2", "--over", "y=0:0.1:2", "--over", "z=0.4:0.5:2"];
     let message = refused(&[&arm[..], &["--starts", "2", "--mesh", "locus.obj"]].concat());
     assert!(message.contains("free motions") && message.contains("--at"), "{message}");
+    // Refused with no other file.
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("map.json");
+    let files = ["--starts", "1", "--mesh", "locus.obj", "--out", out.to_str().unwrap()];
+    refused(&[&arm[..], &files].concat());
+    assert!(!out.exists());
+    // Before a map that would never end.
+    let over =
+        ["map", "3rrr", "--over", "x=-1:1:9000", "--over", "y=-1:1:9000", "--over", "rz=0:1:1"];
+    let message = refused(&[&over[..], &files].concat());
+    assert!(message.contains("'rz' has one value; give it two"), "{message}");
 }

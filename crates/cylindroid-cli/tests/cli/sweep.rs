@@ -476,6 +476,10 @@ fn two_arms_together() {
     assert!(shown.contains("relative to     right/hand_tcp"), "{shown}");
     let out = ["pose", "--out", own.to_str().unwrap()];
     text_with(&out);
+    let plot = folder.path().join("hands.svg");
+    text_with(&["pose", "--plot", plot.to_str().unwrap()]);
+    let drawn = fs::read_to_string(plot).unwrap();
+    assert!(drawn.contains("left/hand_tcp relative to right/hand_tcp"), "{drawn:.500}");
     assert_eq!(manifest(&own)["recipe"]["relative_to"], "right/hand_tcp");
     let other = [&at_home[..], &out, &seen[..2], &["--resume", "--relative-to", "chest"]].concat();
     let other = refused(&other);

@@ -9,6 +9,7 @@ mod array;
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod bracket;
 #[cfg(target_arch = "x86_64")]
 mod cpu;
 mod fnv1a;
@@ -22,6 +23,7 @@ pub(crate) use array::Array;
 pub(crate) use avx2::Lanes4;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::Lanes8;
+pub(crate) use bracket::Bracket;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use cpu::{Avx2, Avx512};
 pub(crate) use fnv1a::fnv1a;

@@ -4,12 +4,14 @@
 //!          rotations of R^T, from reflections of the longer side
 //! Shapes   J: N x 6 x n, values: N x min(t, n), largest first; row-major
 //! Units    of the scaled Jacobian
-//! Valid    any rank: errors of one rounding of the largest value
+//! Valid    any rank: errors of one rounding of the largest value; values below the threshold of
+//!          `Svd::machine_rank` are zero, wherever the columns are that do not count
 //! Why so   one Jacobian in each lane of a register; no lane depends on the others, so a value
 //!          depends neither on its place nor on the number of rows
-//! Checked  tests::agree_with_single, tests/sweep/parts.rs
+//! Checked  tests::agree_with_single, tests::missing_ranks_are_zero, tests/sweep/parts.rs
 
 use crate::linalg::batched::{Reflections, round_robin_pairs, singular_values, sort_descending};
+use crate::linalg::rank_threshold;
 use crate::scalar::{Array, SimdFloat};
 #[cfg(target_arch = "x86_64")]
 use crate::scalar::{Avx2, Avx512, Lanes4, Lanes8};
@@ -112,7 +114,16 @@ impl SingularValues {
                 R::scatter(&values, &mut tail, k);
                 to.copy_from_slice(&tail[..count * k]);
             }
+            to.chunks_exact_mut(k).for_each(|values| without_rounding(values, long));
         }
+    }
+}
+
+/// Zero for values, largest first, that are rounding of a matrix whose longer side is `long`.
+fn without_rounding(values: &mut [f64], long: usize) {
+    let threshold = values.first().map_or(0.0, |largest| rank_threshold(0.0, long, *largest));
+    for value in values.iter_mut().rev().take_while(|value| **value <= threshold) {
+        *value = 0.0;
     }
 }
 
@@ -147,6 +158,32 @@ mod tests {
                     kernel.run(j, &mut alone);
                     assert_eq!(alone, found);
                 }
+            }
+        }
+    }
+
+    /// Columns of zeros and columns that depend on others, in any order.
+    #[test]
+    fn missing_ranks_are_zero() {
+        let mut random = 11;
+        for (n, rank, size) in [(7, 3, 1.0), (7, 5, 1e-9), (9, 2, 1e6), (6, 4, 1.0), (4, 1, 1.0)] {
+            for place in 0..n {
+                let own: Vec<f64> = (0..6 * rank).map(|_| uniform(&mut random) - 0.5).collect();
+                // The last of the columns twice, the others at places that go round.
+                let column = |j: usize| match (j + n - place) % n {
+                    c if c < rank => Some(c),
+                    c if c == rank => Some(rank - 1),
+                    _ => None,
+                };
+                let j: Vec<f64> = (0..6 * n)
+                    .map(|e| column(e % n).map_or(0.0, |c| size * own[6 * c + e / n]))
+                    .collect();
+                let kernel =
+                    SingularValues::new((0..6).map(|row| (row, 1.0)).collect(), vec![1.0; n]);
+                let mut found = vec![0.0; kernel.len()];
+                kernel.run(&j, &mut found);
+                assert!(found[..rank].iter().all(|x| *x > 1e-4 * size), "{found:?}");
+                assert!(found[rank..].iter().all(|x| *x == 0.0), "{found:?}");
             }
         }
     }

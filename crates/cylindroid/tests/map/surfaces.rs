@@ -114,8 +114,8 @@ fn is_beside_others(map: &Map, mode: usize, at: [f64; 3]) -> bool {
     (0..map.cells()).any(|cell| !mode.reached[cell] && near(cell))
 }
 
-/// Of a 3-RRR with eight modes, none of which reaches all cells: a surface ends at the border of the grid or
-/// beside a cell that its mode does not reach.
+/// Of a 3-RRR with eight modes, none of which reaches all cells: here all edges have their vertices, and a
+/// surface ends at the border of the grid or beside a cell that its mode does not reach.
 #[test]
 fn surfaces_end_with_the_grid_or_the_mode() {
     let mechanism = catalogue::load("3rrr").unwrap();
@@ -135,33 +135,59 @@ fn surfaces_end_with_the_grid_or_the_mode() {
     assert!(ends.iter().all(|count| *count > 20), "{ends:?}");
 }
 
-/// The normals point to positive distances: from each triangle to the reached cells around it.
+/// The normals point to positive distances: the plane of a triangle has the two ends of each edge on which
+/// it has a corner on its two sides, the cell with the positive distance on that of the normal.
 #[test]
 fn normals_point_to_positive_distances() {
+    const NEAR: f64 = 1e-6; // corners this near to a cell do not say which edge they are on
     let map = map_at(Pose::IDENTITY, 1.0, [15, 16, 9], LIMITS);
-    let steps: Vec<f64> = map.axes.iter().map(|a| (a.to - a.from) / (a.count - 1) as f64).collect();
-    let point = |v: [f64; 3]| Vec3::new(v[0] / steps[0], v[1] / steps[1], v[2] / steps[2]);
-    // The sign of the distance is that of the determinant, up to one for all.
-    let mode = &map.modes[map.surfaces[0].mode];
-    let cell = (0..map.cells()).find(|&c| mode.reached[c] && mode.type_two[c].abs() > 0.1).unwrap();
-    let home: [f64; 3] = map.values(cell).try_into().unwrap();
-    let flip = (mode.type_two[cell] * residual(home, Pose::IDENTITY, 1.0)).signum();
-    let mut right = 0;
-    let mut all = 0;
-    for surface in map.surfaces.iter().filter(|s| s.mode == map.surfaces[0].mode) {
-        for corners in &surface.triangles {
-            let [a, b, c] = corners.map(|v| point(surface.vertices[v]));
-            let normal = (b - a).cross(c - a);
-            if normal.norm() < 1e-3 {
-                continue; // a sliver
+    let step = |k: usize| (map.axes[k].to - map.axes[k].from) / (map.axes[k].count - 1) as f64;
+    let in_cells = |v: [f64; 3]| [0, 1, 2].map(|k| (v[k] - map.axes[k].from) / step(k));
+    let vector = |v: [f64; 3]| Vec3::new(v[0], v[1], v[2]);
+    let (mut corners, mut triangles, mut skipped) = (0, 0, 0);
+    let mut flips = vec![None; map.modes.len()];
+    for surface in &map.surfaces {
+        let mode = &map.modes[surface.mode];
+        for triangle in &surface.triangles {
+            let places = triangle.map(|v| in_cells(surface.vertices[v]));
+            let edges = places.map(|at| {
+                let first =
+                    at.map(|x| if (x - x.round()).abs() < NEAR { x.round() } else { x.floor() });
+                let along =
+                    [0, 1, 2].map(|k| f64::from(u8::from((at[k] - first[k]).abs() >= NEAR)));
+                (first, along)
+            });
+            if edges.iter().any(|(_, along)| along.iter().all(|x| *x == 0.0)) {
+                skipped += 1;
+                continue;
             }
-            let at = (a + b + c) * (1.0 / 3.0) + normal * (0.2 / normal.norm());
-            let at = [at.x * steps[0], at.y * steps[1], at.z * steps[2]];
-            all += 1;
-            right += usize::from(flip * residual(at, Pose::IDENTITY, 1.0) > 0.0);
+            let [a, b, c] = places.map(vector);
+            let normal = (b - a).cross(c - a);
+            for (at, (first, along)) in places.iter().zip(edges) {
+                let share = (0..3).map(|k| at[k] - first[k]).fold(0.0, f64::max);
+                for k in 0..3 {
+                    assert!((at[k] - first[k] - share * along[k]).abs() < NEAR, "{at:?}");
+                }
+                let end = [0, 1, 2].map(|k| first[k] + along[k]);
+                let signs = [first, end].map(|node| {
+                    let [i, j, k] = node.map(|x| x as usize);
+                    let cell = (i * 16 + j) * 9 + k;
+                    let at: [f64; 3] = map.values(cell).try_into().unwrap();
+                    let value = mode.type_two[cell];
+                    // The sign is that of the determinant, up to one for all of a mode.
+                    let sign = value.signum() * residual(at, Pose::IDENTITY, 1.0).signum();
+                    assert_eq!(*flips[surface.mode].get_or_insert(sign), sign);
+                    value.signum()
+                });
+                assert_eq!(signs[0], -signs[1], "{at:?}");
+                assert!(normal.dot(vector(along)) * signs[1] > 0.0, "{places:?}");
+                corners += 1;
+            }
+            triangles += 1;
         }
     }
-    assert!(all > 300 && right * 100 >= all * 98, "{right} of {all}");
+    assert!(triangles > 500 && skipped * 50 < triangles, "{triangles}, {skipped} skipped");
+    assert_eq!(corners, 3 * triangles);
 }
 
 /// At another place, turned and of another size: the same equation; where the grid moves along, the same

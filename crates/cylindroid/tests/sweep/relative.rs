@@ -220,6 +220,57 @@ fn hands_are_exchanged() {
     same(&["singular_value_1", "singular_value_3", "condition", "yoshikawa"], Some("orientation"));
 }
 
+/// Of some components, or with fewer joints than components, the point and the axes count.
+#[test]
+fn exchanged_hands_differ_in_tasks() {
+    let differ = |robot: &Mechanism, [tool, base]: [&str; 2], task: Option<&str>| {
+        let task = task.map(|name| Task::named(name, robot).unwrap());
+        let of = |frames| {
+            let options = SweepOptions { task, ..seen(robot, frames, &[Quantity::Yoshikawa]) };
+            table(robot, options)
+        };
+        let (a, b) = (of([tool, base]), of([base, tool]));
+        let (a, b) = (a.numbers("yoshikawa").unwrap(), b.numbers("yoshikawa").unwrap());
+        let far = a.iter().zip(b).filter(|(a, b)| (**a - **b).abs() > 1e-3 * a.abs()).count();
+        assert!(far > 150, "{far}");
+    };
+    let robot = two_arms();
+    differ(&robot, HANDS, Some("z,rx"));
+    differ(&robot, HANDS, Some("position"));
+    differ(&cylindroid::load("panda").unwrap(), ["hand_tcp", "link4"], Some("position"));
+}
+
+/// Joints that carry both frames leave fewer than components: the values are those of a sweep whose frame
+/// these joints move alone.
+#[test]
+fn missing_ranks_are_exact() {
+    let robot = cylindroid::load("panda").unwrap();
+    for (frames, moving) in [
+        (["hand_tcp", "link4"], 3),
+        (["link4", "hand_tcp"], 3),
+        (["hand_tcp", "link2"], 5),
+        (["link5", "link1"], 4),
+        (["link3", "link2"], 1),
+    ] {
+        let found = table(&robot, seen(&robot, frames, &OF_JACOBIAN));
+        let of = |name: &str| found.numbers(name).unwrap();
+        let infinite = of("condition").iter().all(|x| *x == f64::INFINITY);
+        assert!(infinite && of("yoshikawa").iter().all(|x| *x == 0.0), "{frames:?}");
+        assert!(of("smallest_singular_value").iter().all(|x| *x == 0.0), "{frames:?}");
+        for k in 1..=6 {
+            let values = of(&format!("singular_value_{k}"));
+            assert!(k <= moving || values.iter().all(|x| *x == 0.0), "{frames:?} {k}");
+        }
+        assert!(of("singular_value_1").iter().all(|x| *x > 0.1), "{frames:?}");
+    }
+    // Without another frame the same.
+    let plain =
+        SweepOptions { relative_to: None, ..seen(&robot, ["link4", "link1"], &OF_JACOBIAN) };
+    let found = table(&robot, plain);
+    assert!(found.numbers("condition").unwrap().iter().all(|x| *x == f64::INFINITY));
+    assert!(found.numbers("yoshikawa").unwrap().iter().all(|x| *x == 0.0));
+}
+
 /// Two arms of two links in the plane, with the length of a link.
 fn planar() -> ParametricModel {
     let mut text = "dimension = 2\ntool = 'a_tip'\n[parameters]\nlink = 0.3\n".to_owned();

@@ -3,18 +3,22 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use cylindroid::sweep::Map;
+use cylindroid::sweep::{Axis, Map};
 use cylindroid::{Error, Mechanism, Result};
 
 fn refused(path: &Path, reason: String) -> Error {
     Error::InvalidOption { option: "--mesh", value: path.display().to_string(), reason }
 }
 
-/// Rejects numbers of axes without surfaces and names that do not end in .obj.
-pub(super) fn check(path: &Path, axes: usize) -> Result<()> {
-    if axes != 3 {
-        let reason = format!("a map of three axes has surfaces, this one has {axes}");
+/// Rejects axes without surfaces and names that do not end in .obj.
+pub(super) fn check(path: &Path, axes: &[Axis]) -> Result<()> {
+    if axes.len() != 3 {
+        let reason = format!("a map of three axes has surfaces, this one has {}", axes.len());
         return Err(refused(path, reason + "; name --over three times"));
+    }
+    if let Some(axis) = axes.iter().find(|axis| axis.count < 2) {
+        let reason = format!("axis '{}' has one value; give it two at least", axis.name);
+        return Err(refused(path, reason));
     }
     if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj")) {
         return Ok(());
@@ -22,8 +26,8 @@ pub(super) fn check(path: &Path, axes: usize) -> Result<()> {
     Err(refused(path, "the name must end in .obj".to_owned()))
 }
 
-/// Writes the file.
-pub(super) fn write(robot: &Mechanism, map: &Map, path: &Path) -> Result<()> {
+/// Rejects maps in which nothing has a sign whose changes were the surfaces.
+pub(super) fn check_map(map: &Map, path: &Path) -> Result<()> {
     if map.free_motions > 0 {
         let reason = format!(
             "the platform has {} free motions, with which there are no surfaces; hold components with \
@@ -37,9 +41,11 @@ pub(super) fn write(robot: &Mechanism, map: &Map, path: &Path) -> Result<()> {
                       surfaces";
         return Err(refused(path, reason.to_owned()));
     }
-    if let Some(axis) = map.axes.iter().find(|axis| axis.count < 2) {
-        return Err(refused(path, format!("axis '{}' has one value; give it two", axis.name)));
-    }
+    Ok(())
+}
+
+/// Writes the file.
+pub(super) fn write(robot: &Mechanism, map: &Map, path: &Path) -> Result<()> {
     std::fs::write(path, text(robot, map)).map_err(|error| Error::Io {
         path: path.to_owned(),
         action: "write",

@@ -6,7 +6,7 @@ mod report;
 
 use std::io::Write;
 
-use cylindroid::sweep::{LocusKind, Map, MapOptions};
+use cylindroid::sweep::{Axis, LocusKind, Map, MapOptions};
 
 use self::report::{MapJson, RegionJson, report};
 use crate::args::MapArgs;
@@ -26,14 +26,15 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
     if let Some(path) = &args.out {
         file::check(path)?;
     }
+    let axes: Vec<Axis> = args.over.iter().map(|axis| axis.0.clone()).collect();
     if let Some(path) = &args.mesh {
-        mesh::check(path, args.over.len())?;
+        mesh::check(path, &axes)?;
     }
     let frame = reference_or_tool(&robot, &args.frame)?;
     let at = args.at.iter().map(|at| (at.pair().0.to_owned(), Some(at.pair().1)));
     let free = args.free.iter().map(|name| (name.clone(), None));
     let options = MapOptions {
-        axes: args.over.iter().map(|axis| axis.0.clone()).collect(),
+        axes,
         held: at.chain(free).collect(),
         end_effector: Some(frame),
         start: Some(args.q.configuration(&robot, args.model.srdf.as_deref(), false)?),
@@ -56,6 +57,10 @@ pub(crate) fn run(args: &MapArgs, style: Style, out: &mut dyn Write) -> anyhow::
     )?;
     if interrupt.came() {
         return interrupted();
+    }
+    // Before any file.
+    if let Some(path) = &args.mesh {
+        mesh::check_map(&map, path)?;
     }
     if let Some(path) = &args.out {
         file::write(&robot, &map, &report, path)?;

@@ -126,7 +126,10 @@ pub(crate) fn plan(
         .filter(|axis| axis.count > 1)
         .filter_map(|axis| Some(SliceAxis { axis: axis.clone(), name: find(&axis.name)? }))
         .collect();
-    let title = format!("{}: {}", robot.name(), robot.frame_of(sweep.end_effector().frame).name);
+    let frame = &robot.frame_of(sweep.end_effector().frame).name;
+    let base = sweep.relative_to().map(|base| &robot.frame_of(base).name);
+    let base = base.map(|base| format!(" relative to {base}")).unwrap_or_default();
+    let title = format!("{}: {frame}{base}", robot.name());
     let leaves_out_zero = is_map
         && color.as_ref().is_some_and(|c| {
             ["reachability", "orientation_share", "directions", "orientations"]

@@ -17,7 +17,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::scalar::{atan2, sin_cos};
+use crate::scalar::{Bracket, atan2, sin_cos};
 use crate::spatial::Vec3;
 use crate::tolerance::{FREE_TURN, NEARLY_SATISFIED, TANGENT_ROOT};
 
@@ -308,30 +308,16 @@ fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
 
 /// The root of a monotonic function between `low` and `high`, if its sign changes there.
 fn between(p: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
-    let (mut a, mut b, mut at_a, mut at_b) = (low, high, p(low), p(high));
-    if !(at_a <= 0.0 && at_b >= 0.0 || at_a >= 0.0 && at_b <= 0.0) {
-        return None;
-    }
-    // Regula falsi with the Illinois modification, and occasional bisection.
-    for i in 0..100 {
-        if at_a == 0.0 || at_a == at_b {
-            return Some(a);
-        }
-        let secant = b - at_b * (b - a) / (at_b - at_a);
-        let t = if i % 4 == 3 || !secant.is_finite() { 0.5 * (a + b) } else { secant };
-        let at_t = p(t);
-        if (at_t < 0.0) == (at_b < 0.0) {
-            at_a *= 0.5;
-        } else {
-            (a, at_a) = (b, at_b);
-        }
-        let moved = (t - b).abs();
-        (b, at_b) = (t, at_t);
-        if at_b == 0.0 || moved <= f64::EPSILON * b.abs() {
+    let mut bracket = Bracket::new([low, high], [p(low), p(high)])?;
+    for _ in 0..100 {
+        let Some(t) = bracket.place() else { break };
+        let moved = (t - bracket.last()).abs();
+        bracket.narrow(t, p(t));
+        if moved <= f64::EPSILON * t.abs() {
             break;
         }
     }
-    Some(b)
+    Some(bracket.root())
 }
 
 #[cfg(test)]

@@ -80,12 +80,13 @@ pub struct Locus {
 /// A surface of singular configurations of one mode, as triangles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// What happens there, at a vertex in its middle: [`LocusKind::TypeTwo`] or
-    /// [`LocusKind::Passive`].
+    /// What happens at most of its vertices: [`LocusKind::TypeTwo`] or [`LocusKind::Passive`]. Where
+    /// sheets of both kinds cross, the triangles join them to one surface.
     pub kind: LocusKind,
     /// The mode that it belongs to.
     pub mode: usize,
-    /// True if each side of a triangle is one of another: otherwise it ends with the grid or the mode.
+    /// True if each side of a triangle is one of another. Otherwise it ends with the grid or the mode, or
+    /// where the way along an edge leaves the branch or the distance jumps.
     pub closed: bool,
     /// The values of the axes at its vertices [m or rad].
     pub vertices: Vec<[f64; 3]>,

@@ -3,17 +3,18 @@
 //!
 //! Formula  s(p) = 0, s the signed distance to singularities of type II of a mode
 //! Method   marching tetrahedra over the cells that the mode reaches; the vertex of an edge is found by
-//!          regula falsi (Illinois) along it, on ways of the platform from the last configurations
+//!          regula falsi (scalar/bracket.rs) along it, on ways of the platform from the last
+//!          configurations
 //! Units    of the axes [m or rad]; s has none
 //! Valid    mechanisms in which nothing is left free and s has a sign. An edge whose way leaves the mode
 //!          or its branch, and one on which s jumps, has no vertex: the surface ends there, as at the
-//!          border of the grid and of the mode. Parts smaller than a cell may be missed
+//!          border of the grid and of the mode. Parts smaller than a cell may be missed. At a vertex
+//!          |s| <= 10^-12, or 10^-9 where rounding of the way leaves no nearer point on the edge
 //! Why so   triangles have the resolution of the grid, vertices that of rounding. In type I a mode ends:
 //!          its distance does not change its sign within it
-//! Source   Dowell & Jarratt 1971, A modified regula falsi method for computing the root of an equation
 //! Checked  tests/map/surfaces.rs
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::super::workers::{Counted, Watch, Workers};
 use super::flood::Flooded;
@@ -28,15 +29,18 @@ use crate::closure::{
 };
 use crate::error::Result;
 use crate::linalg::Svd;
+use crate::scalar::Bracket;
 use crate::spatial::Vec3;
 use crate::tolerance::{LOCUS_MET, SAME_ASSEMBLY};
 
 /// Edges that a thread takes at once: about ten milliseconds.
 const BLOCK: usize = 16;
-/// Evaluations of an edge at most; a dozen are usual.
-const MAX_STEPS: usize = 100;
-/// Distance beyond which the end of the search is a jump of the sign [-].
+/// Steps on an edge at most; six to twelve are usual, four for each halving where s jumps.
+const MAX_STEPS: usize = 240;
+/// Distance beyond which a change of the sign without width is a jump [-].
 const JUMP: f64 = 1e-9;
+/// Width of a bracket without one, as a share of the edge: a few roundings.
+const NO_WIDTH: f64 = 4.0 * f64::EPSILON;
 
 /// All surfaces; none if the observer stops the workers.
 pub(super) fn surfaces(
@@ -81,9 +85,15 @@ pub(super) fn surfaces(
         let vertices: Vec<&[f64]> =
             kept.iter().filter_map(|edge| vertices[*edge].as_deref()).collect();
         for part in marched.parts() {
-            let middle = part[part.len() / 2][0];
-            let motion = motions.motion(vertices[middle])?;
-            let kind = kind_of(problem, LocusKind::TypeTwo, &motion);
+            let corners: BTreeSet<usize> = part.iter().flatten().copied().collect();
+            let mut passive = 0;
+            for vertex in &corners {
+                let motion = motions.motion(vertices[*vertex])?;
+                let kind = kind_of(problem, LocusKind::TypeTwo, &motion);
+                passive += usize::from(kind == LocusKind::Passive);
+            }
+            let is_passive = 2 * passive > corners.len();
+            let kind = if is_passive { LocusKind::Passive } else { LocusKind::TypeTwo };
             surfaces.push(surface(problem, (kind, mode), &vertices, part));
         }
     }
@@ -128,9 +138,8 @@ struct Edges<'a> {
     landmarks: Landmarks,
 }
 
-/// A point of an edge: its share of the way, its node and its distance.
+/// A point of an edge: its node and its distance.
 struct Point {
-    share: f64,
     node: PathNode,
     value: f64,
 }
@@ -165,47 +174,42 @@ impl<'a> Edges<'a> {
     /// The configuration on an edge in which the mode is singular, if it leads from one end to the other.
     fn vertex(&mut self, mode: &Flooded, [a, b]: [usize; 2]) -> Result<Option<Vec<f64>>> {
         let (from, to) = (self.grid.values(a), self.grid.values(b));
-        let (Some(first), Some(last)) = (mode.at(a), mode.at(b)) else { return Ok(None) };
+        let (Some(first), Some(end)) = (mode.at(a), mode.at(b)) else { return Ok(None) };
         let node = self.path.node(first)?;
-        let mut low = Point { share: 0.0, node, value: mode.type_two[a] };
-        let Some(mut high) = self.point(&low, 1.0, &to)? else { return Ok(None) };
-        let (here, there) = (self.places(&high.node.q)?, self.places(last)?);
+        let mut kept = Point { node, value: mode.type_two[a] };
+        let Some(mut last) = self.point(&kept, &to)? else { return Ok(None) };
+        let (here, there) = (self.places(&last.node.q)?, self.places(end)?);
         let is_other = signature_distance(&here, &there, |_| true) > SAME_ASSEMBLY;
-        if is_other || (low.value > 0.0) == (high.value > 0.0) {
+        if is_other || (kept.value > 0.0) == (last.value > 0.0) {
             return Ok(None);
         }
-        // What the ends count: half of an end that stays.
-        let mut counted = [low.value, high.value];
+        let Some(mut bracket) = Bracket::new([0.0, 1.0], [kept.value, last.value]) else {
+            return Ok(None);
+        };
         for _ in 0..MAX_STEPS {
-            let nearest = if low.value.abs() < high.value.abs() { &low } else { &high };
-            let width = high.share - low.share;
-            if nearest.value.abs() <= LOCUS_MET || width <= f64::EPSILON {
-                break;
+            let nearest = if kept.value.abs() < last.value.abs() { &kept } else { &last };
+            let has_no_width = bracket.width() <= NO_WIDTH;
+            if nearest.value.abs() <= if has_no_width { JUMP } else { LOCUS_MET } {
+                return Ok(Some(nearest.node.q.clone()));
             }
-            let share = low.share - counted[0] * width / (counted[1] - counted[0]);
-            let is_inside = share > low.share && share < high.share;
-            let share = if is_inside { share } else { low.share + 0.5 * width };
+            let Some(share) = bracket.place().filter(|_| !has_no_width) else { break };
             let at: Vec<f64> = from.iter().zip(&to).map(|(a, b)| a + share * (b - a)).collect();
-            let Some(point) = self.point(nearest, share, &at)? else { return Ok(None) };
-            if (point.value > 0.0) == (low.value > 0.0) {
-                counted = [point.value, 0.5 * counted[1]];
-                low = point;
-            } else {
-                counted = [0.5 * counted[0], point.value];
-                high = point;
+            let Some(point) = self.point(nearest, &at)? else { return Ok(None) };
+            let before = std::mem::replace(&mut last, point);
+            if bracket.narrow(share, last.value) {
+                kept = before;
             }
         }
-        let nearest = if low.value.abs() < high.value.abs() { low } else { high };
-        Ok((nearest.value.abs() <= JUMP).then_some(nearest.node.q))
+        Ok(None)
     }
 
     /// The point of these values of the axes, on the branch of another one.
-    fn point(&mut self, from: &Point, share: f64, at: &[f64]) -> Result<Option<Point>> {
+    fn point(&mut self, from: &Point, at: &[f64]) -> Result<Option<Point>> {
         let Ok(node) = self.path.go(&from.node, at)? else { return Ok(None) };
         self.path.equations.set(&node.q)?;
         let block = self.problem.type_two.block(&self.path.equations.jacobian);
         let value = self.problem.type_two.value(&block, &Svd::of(&block));
-        Ok(Some(Point { share, node, value }))
+        Ok(Some(Point { node, value }))
     }
 
     fn places(&self, q: &[f64]) -> Result<Vec<Vec3>> {
