@@ -31,7 +31,8 @@ pub(super) struct CoupledLoops {
     /// The columns: passive ones come first.
     velocities: Vec<Velocity>,
     passive: usize,
-    /// The size of the unit of each row loaded.
+    /// The number of rows loaded, and the size of the unit of each: with memory for all, also in copies.
+    rows: usize,
     row_sizes: Vec<f64>,
     /// [C_p C_a r], then [R B r_1; 0 S r_2]: t x (p + a + 1).
     system: Matrix,
@@ -60,7 +61,8 @@ impl CoupledLoops {
         Self {
             velocities: passive.into_iter().chain(actuated).collect(),
             passive: p,
-            row_sizes: Vec::with_capacity(t),
+            rows: 0,
+            row_sizes: vec![0.0; t],
             system: Matrix::zeros(t, p + a + 1),
             left: Elimination::workspace(p),
             transposed: Matrix::zeros(p, t.min(p)),
@@ -87,14 +89,15 @@ impl CoupledLoops {
 
     /// Removes all rows.
     pub(super) fn clear(&mut self) {
-        self.row_sizes.clear();
+        self.rows = 0;
         self.system.as_mut_slice().fill(0.0);
     }
 
     /// Adds a row of zeros with a residual, `size` that of its unit; returns its place.
     pub(super) fn push_row(&mut self, size: f64, residual: f64) -> usize {
-        let (row, last) = (self.row_sizes.len(), self.velocities.len());
-        self.row_sizes.push(size);
+        let (row, last) = (self.rows, self.velocities.len());
+        self.row_sizes[row] = size;
+        self.rows += 1;
         self.system[(row, last)] = residual / size;
         row
     }
