@@ -62,6 +62,7 @@ impl Bracket {
     }
 
     /// The distance of the two places.
+    #[cfg(any(test, feature = "sweep"))]
     pub(crate) fn width(&self) -> f64 {
         (self.last - self.kept).abs()
     }
