@@ -86,14 +86,16 @@ impl LoopEdge {
     /// For a task of m components.
     pub(super) fn new(
         mechanism: &Mechanism,
-        loops: LoopMotions,
+        mut loops: LoopMotions,
         chain: Chain,
         space: TaskSpace,
-    ) -> Self {
+    ) -> Result<Self> {
+        // A copy has no memory of its own before it is loaded once.
+        loops.set_closed(mechanism.home())?;
         let (n, rates, a, m) =
             (mechanism.n(), loops.velocities(), loops.actuated, space.rows.len());
         let motions = || Motions { all: Matrix::zeros(rates, a), reduced: Matrix::zeros(m, a) };
-        Self {
+        Ok(Self {
             sizes: (0..rates).map(|i| mechanism.unit_of(i)).collect(),
             is_actuated: loops.are_actuated(),
             present: motions(),
@@ -121,7 +123,7 @@ impl LoopEdge {
             loops,
             chain,
             space,
-        }
+        })
     }
 
     /// Forgets the last result.
