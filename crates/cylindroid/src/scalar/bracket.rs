@@ -91,7 +91,8 @@ mod tests {
         let of_square = |x: f64| x * x - 0.3;
         let of_exp = |x: f64| x.exp() - 1.7;
         let of_sin = |x: f64| x.sin() - 0.2;
-        let cases: [(&dyn Fn(f64) -> f64, [f64; 2], f64); 3] = [
+        type Case<'a> = (&'a dyn Fn(f64) -> f64, [f64; 2], f64);
+        let cases: [Case<'_>; 3] = [
             (&of_square, [0.0, 1.0], 0.3_f64.sqrt()),
             (&of_exp, [0.0, 1.0], 1.7_f64.ln()),
             (&of_sin, [-1.0, 1.5], 0.2_f64.asin()),
