@@ -36,8 +36,8 @@ use crate::sweep::{axes, count_of, go_on};
 ///     coordinate or None), 'modes' (indices), 'closed', 'points' (values of the axes, (K, 2)) and 'q'
 ///     (configurations, (K, n)).
 /// surfaces : list of dict
-///     Singularities of type II, for three axes: 'kind' ('type II' or 'passive', at a vertex in the
-///     middle), 'mode' (an index), 'closed' (each side of a triangle is one of another), 'vertices'
+///     Singularities of type II, for three axes: 'kind' ('type II' or 'passive', at most of the
+///     vertices), 'mode' (an index), 'closed' (each side of a triangle is one of another), 'vertices'
 ///     (values of the axes, (K, 3)), 'triangles' (indices of vertices, (T, 3), counterclockwise as
 ///     seen from where 'type_two' is positive) and 'q' (configurations, (K, n)).
 #[pyclass(frozen, module = "cylindroid", name = "WorkspaceMap")]

@@ -126,6 +126,11 @@ impl LoopEdge {
         })
     }
 
+    /// True for a joint with a drive.
+    pub(super) fn is_actuated(&self, rate: usize) -> bool {
+        self.is_actuated[rate]
+    }
+
     /// Forgets the last result.
     pub(super) const fn reset(&mut self) {
         self.is_known = false;

@@ -83,11 +83,17 @@ impl Servo {
         }
     }
 
-    /// The norm of the unbounded joint velocities, lengths over that of the mechanism.
+    /// The norm of the unbounded velocities of the joints, of closed chains of those with drives, lengths
+    /// over that of the mechanism: passive joints turn fast without an edge.
     fn size_of_rates(&self) -> f64 {
+        let edge = self.loop_edge.as_ref();
+        let counts = |i: usize| edge.is_none_or(|edge| edge.is_actuated(i));
         let unit = |i: usize| self.mechanism.unit_of(self.place(i));
         let rates = self.primary.iter().zip(&self.space.columns).enumerate();
-        rates.map(|(i, (rate, column))| (rate * column / unit(i)).powi(2)).sum::<f64>().sqrt()
+        let squares = rates
+            .filter(|(i, _)| counts(*i))
+            .map(|(i, (rate, column))| (rate * column / unit(i)).powi(2));
+        squares.sum::<f64>().sqrt()
     }
 
     /// The share of the task within the speeds of the joints: of closed chains as fast as where the task
