@@ -87,7 +87,8 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "FILE.obj", conflicts_with = "no_loci")]
     pub(crate) mesh: Option<PathBuf>,
 
-    /// Draw two axes as an SVG, a panel for each mode
+    /// Draw two axes as an SVG, a panel for each mode; of three axes slices along the last one of up to
+    /// three modes
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
 

@@ -153,7 +153,7 @@ fn what_is_wrong_is_named() {
     let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "x=1"]);
     assert!(message.contains("once"), "{message}");
     let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--plot", "map.svg"]);
-    assert!(message.contains("two axes"), "{message}");
+    assert!(message.contains("two or three axes"), "{message}");
     let message = refused(&[&OVER[..], &["--out", "map.txt"]].concat());
     assert!(message.contains(".csv or .json"), "{message}");
     let message = refused(&["map", "five-bar", "--over", "x=0:1:1e9", "--over", "y=0:1:1e9"]);
@@ -216,6 +216,28 @@ fn surfaces_of_three_axes() {
     assert!(!text(&[&SPACE[..], &["--no-loci"]].concat()).contains("triangles"));
 }
 
+/// Slices along the third axis, of three modes at most.
+#[test]
+fn slices_of_three_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("map.svg");
+    let report = json(&[&SPACE[..], &["--plot", path.to_str().unwrap()]].concat(), 0);
+    let drawn = fs::read_to_string(&path).unwrap();
+    let modes = report["modes"].as_array().unwrap().len();
+    for mode in 1..=modes {
+        assert_eq!(drawn.contains(&format!("mode {mode}: rz = ")), mode <= 3, "{mode}");
+    }
+    let titles = drawn.lines().filter(|line| line.starts_with("mode ")).count();
+    assert_eq!(titles, 4 * modes.min(3));
+    for rz in [&report["axes"][2]["from"], &report["axes"][2]["to"]] {
+        assert!(drawn.contains(&format!("mode 1: rz = {rz} rad")), "{rz}");
+    }
+    assert!(drawn.contains("type II") && drawn.contains("x [m]"));
+    let bare = [&SPACE[..], &["--no-loci", "--plot", path.to_str().unwrap()]].concat();
+    json(&bare, 0);
+    assert!(fs::read_to_string(&path).unwrap().len() < drawn.len());
+}
+
 #[test]
 fn meshes_that_there_are_not() {
     let message = refused(&[&OVER[..], &["--mesh", "locus.obj"]].concat());
@@ -224,8 +246,6 @@ fn meshes_that_there_are_not() {
     assert!(message.contains("end in .obj"), "{message}");
     let message = refused(&[&SPACE[..], &["--mesh", "locus.obj", "--no-loci"]].concat());
     assert!(message.contains("--no-loci"), "{message}");
-    let message = refused(&[&SPACE[..], &["--plot", "map.svg"]].concat());
-    assert!(message.contains("two axes") && message.contains("--mesh"), "{message}");
     let arm =
         ["map", "panda", "--over", "x=0.4:0.5:2", "--over", "y=0:0.1:2", "--over", "z=0.4:0.5:2"];
     let message = refused(&[&arm[..], &["--starts", "2", "--mesh", "locus.obj"]].concat());

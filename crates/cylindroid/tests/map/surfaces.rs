@@ -114,6 +114,52 @@ fn is_beside_others(map: &Map, mode: usize, at: [f64; 3]) -> bool {
     (0..map.cells()).any(|cell| !mode.reached[cell] && near(cell))
 }
 
+/// Sections at the cells have their ends on the locus, those between them beside it, and they separate the
+/// cells of both signs as the picture of a slice shows them.
+#[test]
+fn sections_separate_the_signs() {
+    let map = map_at(Pose::IDENTITY, 1.0, [15, 16, 9], LIMITS);
+    let [x, y, third] = [&map.axes[0], &map.axes[1], &map.axes[2]];
+    let (mut ends, mut crossed) = (0, 0);
+    for place in 0..third.count {
+        let value = third.value(place);
+        for (number, mode) in map.modes.iter().enumerate() {
+            let own = map.surfaces.iter().filter(|surface| surface.mode == number);
+            let segments: Vec<_> =
+                own.flat_map(|surface| surface.section(value, place == 0)).collect();
+            for [x, y] in segments.iter().flatten() {
+                let value = residual([*x, *y, value], Pose::IDENTITY, 1.0);
+                assert!(value.abs() < 1e-8, "{value} at {x} {y}");
+                ends += 1;
+            }
+            // Each change of sign along y has the end of a segment on the edge.
+            for (column, row) in (0..x.count).flat_map(|c| (0..y.count - 1).map(move |r| (c, r))) {
+                let cell = |row: u64| ((column * y.count + row) * third.count + place) as usize;
+                let (a, b) = (cell(row), cell(row + 1));
+                let reached = mode.reached[a] && mode.reached[b];
+                if !reached || mode.type_two[a] * mode.type_two[b] >= 0.0 {
+                    continue;
+                }
+                let (at, from, to) = (x.value(column), y.value(row), y.value(row + 1));
+                let on_edge =
+                    |end: &[f64; 2]| (end[0] - at).abs() < 1e-12 && end[1] >= from && end[1] <= to;
+                let found = segments.iter().flatten().any(on_edge);
+                let middle = [at, 0.5 * (from + to), value];
+                assert!(found || is_beside_others(&map, number, middle), "{middle:?}");
+                crossed += u32::from(found);
+            }
+        }
+        let between = 0.5 * (value + third.value((place + 1).min(third.count - 1)));
+        for [x, y] in map.surfaces.iter().flat_map(|s| s.section(between, false)).flatten() {
+            let value = residual([x, y, between], Pose::IDENTITY, 1.0);
+            assert!(value.abs() < 0.05, "{value} at {x} {y}");
+        }
+    }
+    assert!(ends > 300 && crossed > 50, "{ends} {crossed}");
+    let beyond = map.surfaces.iter().flat_map(|s| s.section(third.to + 0.1, false));
+    assert_eq!(beyond.count(), 0);
+}
+
 /// Of a 3-RRR with eight modes, none of which reaches all cells: here all edges have their vertices, and a
 /// surface ends at the border of the grid or beside a cell that its mode does not reach.
 #[test]

@@ -97,6 +97,29 @@ pub struct Surface {
     pub q: Vec<Vec<f64>>,
 }
 
+impl Surface {
+    /// The section with the plane in which the third axis has a value: the values of the other two at
+    /// both ends of each segment. A side of a triangle within the plane belongs to the triangle below it
+    /// alone, or with `from_above` to the one above, as where the grid begins.
+    #[must_use]
+    pub fn section(&self, value: f64, from_above: bool) -> Vec<[[f64; 2]; 2]> {
+        let below = |z: f64| if from_above { z <= value } else { z < value };
+        let segment = |triangle: &[usize; 3]| {
+            let corners = triangle.map(|vertex| self.vertices[vertex]);
+            let mut ends = [0, 1, 2].into_iter().filter_map(|i| {
+                let (a, b) = (corners[i], corners[(i + 1) % 3]);
+                if below(a[2]) == below(b[2]) {
+                    return None;
+                }
+                let share = (value - a[2]) / (b[2] - a[2]);
+                Some([0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])))
+            });
+            Some([ends.next()?, ends.next()?])
+        };
+        self.triangles.iter().filter_map(segment).collect()
+    }
+}
+
 /// A mode without platform coordinates.
 pub(super) fn working_mode(mechanism: &Mechanism, mode: Flooded) -> WorkingMode {
     let n = mechanism.n();
