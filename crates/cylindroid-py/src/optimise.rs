@@ -161,7 +161,7 @@ impl PyOptimalDesigns {
 /// samples, over, q, configurations
 ///     The configurations of each design, as for `sweep`; home by default. Parameters in `over` are a
 ///     workspace, at each point of which designs are evaluated.
-/// frame, tool, task, metric, length, threads
+/// frame, tool, relative_to, task, metric, length, threads
 ///     As for `sweep`.
 ///
 /// Returns
@@ -198,7 +198,8 @@ impl PyOptimalDesigns {
 #[pyfunction]
 #[pyo3(signature = (mechanism, vary, minimise = None, maximise = None, designs = 64, starts = 4,
     evaluations = 2000, seed = 0, samples = None, over = None, q = None, configurations = None,
-    frame = None, tool = None, task = None, metric = "unit", length = None, threads = None))]
+    frame = None, tool = None, task = None, metric = "unit", length = None, threads = None,
+    relative_to = None))]
 #[expect(clippy::too_many_arguments, reason = "they have names in Python")]
 pub(crate) fn optimise<'py>(
     py: Python<'py>,
@@ -220,6 +221,7 @@ pub(crate) fn optimise<'py>(
     #[pyo3(from_py_with = argument)] metric: &str,
     #[pyo3(from_py_with = argument)] length: Option<f64>,
     #[pyo3(from_py_with = argument)] threads: Option<usize>,
+    #[pyo3(from_py_with = argument)] relative_to: Option<&str>,
 ) -> Result<PyOptimalDesigns> {
     let robot = &*mechanism;
     let mechanism = robot.inner.clone();
@@ -252,6 +254,7 @@ pub(crate) fn optimise<'py>(
         sweep: SweepOptions {
             source,
             end_effector,
+            relative_to: relative_to.map(|name| mechanism.frame(name)).transpose()?,
             task: task.map(|name| Task::named(name, &mechanism)).transpose()?,
             metric: VelocityMetric::named(metric)?,
             length,

@@ -464,6 +464,24 @@ def test_trade_offs_of_designs():
     assert none.best is None and none.invalid == 4 and len(none.designs["rod"]) == 0
 
 
+def test_a_design_as_seen_from_a_moving_frame():
+    names = [("ground", "upper", "0"), ("upper", "lower", "1"), ("lower", "hand", "2")]
+    joints = [
+        f"[[joint]]\nname = 'to_{b}'\ntype = 'revolute'\nbetween = ['{a}', '{b}']\norigin = [{x}, 0]"
+        for a, b, x in names
+    ]
+    head = "dimension = 2\nreference = 'hand'\nreference_point = ['2 + b', 0]\n[parameters]\nb = 0.9\n"
+    arm = cy.parse(head + "\n".join(joints), "toml")
+    options = {"minimise": "condition", "q": [0.3, 1, 0.75 * np.pi], "task": "x,y"}
+    # Salisbury & Craig (1982): two links are isotropic at a ratio of 1/sqrt(2).
+    seen = cy.optimise(arm, {"b": (0.2, 2.0)}, relative_to="upper", **options)
+    assert abs(seen.best["b"] - np.sqrt(0.5)) < 1e-6
+    world = cy.optimise(arm, {"b": (0.2, 2.0)}, **options)
+    assert abs(world.best["b"] - np.sqrt(0.5)) > 0.1
+    with pytest.raises(cy.UnknownNameError, match="upper"):
+        cy.optimise(arm, {"b": (0.2, 2.0)}, relative_to="uper", **options)
+
+
 def test_wrong_objectives_are_refused():
     r = cy.load(DESIGNS)
     vary = {"crank": (0.3, 0.8)}

@@ -93,8 +93,12 @@ pub(crate) struct OptimiseArgs {
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
 
+    /// The frame from which --frame is seen, which may move, as for `sweep`: two arms together
+    #[arg(long, value_name = "FRAME")]
+    pub(crate) relative_to: Option<String>,
+
     /// Components of the twist that the measures of the Jacobian see: pose, position, orientation,
-    /// or a list of x,y,z,rx,ry,rz, in world axes [default: pose]
+    /// or a list of x,y,z,rx,ry,rz, in world axes or those of --relative-to [default: pose]
     #[arg(long, value_name = "TASK")]
     pub(crate) task: Option<String>,
 

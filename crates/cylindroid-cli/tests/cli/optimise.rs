@@ -75,3 +75,53 @@ fn wrong_objectives_are_refused() {
     let message = refused(&with(&["--minimise", "volume", "--over", "left_drive=0:1:3"]));
     assert!(message.contains("loops leave no free choice"), "{message}");
 }
+
+/// The last two links of an arm as seen from the first one are isotropic at a ratio of 1/sqrt(2)
+/// (Salisbury & Craig 1982), wherever the first joint stands.
+#[test]
+fn a_design_as_seen_from_a_moving_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.toml");
+    std::fs::write(&path, THREE_LINKS).unwrap();
+    let vary = ["optimise", path.to_str().unwrap(), "--vary", "b=0.2:2", "--minimise", "condition"];
+    let bent = ["--task", "x,y", "--q", "0.3,1,2.356194490192345"];
+    let seen = [&vary[..], &bent, &["--relative-to", "upper"]].concat();
+    let report = json(&seen, 0);
+    assert_eq!(report["relative_to"], "upper");
+    let best = &report["designs"][0];
+    assert!((numbers(&best["values"])[0] - 0.5_f64.sqrt()).abs() < 1e-6, "{best}");
+    assert!((numbers(&best["indices"])[0] - 1.0).abs() < 1e-6, "{best}");
+    assert!(text(&seen).contains("relative to     upper"));
+    let world = json(&[&vary[..], &bent].concat(), 0);
+    assert!(world.get("relative_to").is_none());
+    assert!((numbers(&world["designs"][0]["values"])[0] - 0.5_f64.sqrt()).abs() > 0.1, "{world}");
+    let unknown = refused(&[&vary[..], &["--relative-to", "uper"]].concat());
+    assert!(unknown.contains("upper"), "{unknown}");
+}
+
+const THREE_LINKS: &str = r#"
+dimension = 2
+reference = "hand"
+reference_point = ["2 + b", 0]
+
+[parameters]
+b = 0.9
+
+[[joint]]
+name = "shoulder"
+type = "revolute"
+between = ["ground", "upper"]
+origin = [0, 0]
+
+[[joint]]
+name = "elbow"
+type = "revolute"
+between = ["upper", "lower"]
+origin = [1, 0]
+
+[[joint]]
+name = "wrist"
+type = "revolute"
+between = ["lower", "hand"]
+origin = [2, 0]
+"#;

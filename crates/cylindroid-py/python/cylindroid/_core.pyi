@@ -2273,6 +2273,7 @@ def optimise(
     metric: str = "unit",
     length: float | None = None,
     threads: int | None = None,
+    relative_to: str | None = None,
 ) -> OptimalDesigns: ...
 def parse(
     text: str,

@@ -25,6 +25,7 @@ pub(crate) fn run(args: &OptimiseArgs, style: Style, out: &mut dyn Write) -> any
     let workspace = chosen.parameters(&robot)?;
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
+    let base = args.relative_to.as_deref();
     let task = args.task.as_deref().map(|name| Task::named(name, &robot)).transpose()?;
     let of = |names: &[String], sense: Sense| {
         let own = names.iter().map(|name| DesignObjective::named(name, sense));
@@ -43,6 +44,7 @@ pub(crate) fn run(args: &OptimiseArgs, style: Style, out: &mut dyn Write) -> any
         sweep: SweepOptions {
             source: source.clone(),
             end_effector: frame,
+            relative_to: base.map(|name| robot.frame(name)).transpose()?,
             task,
             metric: args.metric.metric(),
             length: args.length,

@@ -13,6 +13,8 @@ use crate::output::{self, Align, number};
 pub(super) struct Report<'a> {
     model: &'a str,
     frame: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    relative_to: Option<&'a str>,
     /// Of each design, in words.
     configurations: String,
     /// Parameters at each point of whose grid designs are evaluated.
@@ -110,6 +112,7 @@ impl<'a> Report<'a> {
         Self {
             model: robot.name(),
             frame: &robot.frame_of(search.end_effector().frame).name,
+            relative_to: args.relative_to.as_deref(),
             configurations,
             workspace: workspace.iter().map(axis).collect(),
             parameters: parameters.collect(),
@@ -151,6 +154,7 @@ impl<'a> Report<'a> {
                 ("configurations", self.configurations.clone()),
                 ("workspace", workspace.collect::<Vec<_>>().join("; ")),
                 ("frame", self.frame.to_owned()),
+                ("relative to", self.relative_to.unwrap_or_default().to_owned()),
                 ("parameters", parameters.collect::<Vec<_>>().join(", ")),
                 ("objectives", objectives.collect::<Vec<_>>().join(", ")),
                 ("designs", counts),
