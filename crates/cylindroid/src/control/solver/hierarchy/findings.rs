@@ -23,6 +23,7 @@ fn findings_stay_mended() {
         let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
         unclear += u32::from(!optimality::check_changed(&bytes, |_| {}));
         optimality::check_changed(&bytes, Problem::reverse_and_scale);
+        optimality::check(&bytes);
     }
     assert!(unclear <= 4, "{unclear} of 2000 problems have levels that are not looked at");
 }

@@ -11,16 +11,22 @@ use crate::scalar::uniform;
 pub(super) struct Random<'b> {
     state: u64,
     bytes: &'b [u8],
+    /// Signed numbers are eighths: ranks of matrices of such are clear.
+    is_coarse: bool,
 }
 
 impl<'b> Random<'b> {
     #[cfg(test)]
     pub(super) fn seeded(state: u64) -> Self {
-        Self { state, bytes: &[] }
+        Self { state, bytes: &[], is_coarse: false }
     }
 
     pub(super) fn of_bytes(bytes: &'b [u8]) -> Self {
-        Self { state: 0, bytes }
+        Self { state: 0, bytes, is_coarse: false }
+    }
+
+    pub(super) fn coarse_of_bytes(bytes: &'b [u8]) -> Self {
+        Self { state: 0, bytes, is_coarse: true }
     }
 
     pub(super) fn unit(&mut self) -> f64 {
@@ -34,7 +40,8 @@ impl<'b> Random<'b> {
     }
 
     pub(super) fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
+        let fine = 2.0 * self.unit() - 1.0;
+        if self.is_coarse { (8.0 * fine).round() / 8.0 } else { fine }
     }
 
     pub(super) fn below(&mut self, n: usize) -> usize {
