@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // a test that fails
 
+use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -99,8 +100,9 @@ fn programs_in_c_and_cpp_run() {
     assert!(compilers > 0, "neither gcc nor clang is installed");
 }
 
-/// The loop of the example in C++: the median time of a step [us].
-fn median_step(steps: usize) -> f64 {
+/// The loop of the example in C++: the median time of a step [us], whose target is a pose already or, as in
+/// C++, a matrix that is to be checked, like the pose that comes back.
+fn median_step(steps: usize, of_matrix: bool) -> f64 {
     let robot = cylindroid::catalogue::load("panda").unwrap();
     let mut q = vec![0.3, -0.4, 0.1, -2.0, 0.2, 1.7, 0.5];
     let start = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
@@ -121,10 +123,16 @@ fn median_step(steps: usize) -> f64 {
                 growth * sin + ramp * r * w * cos,
                 0.0,
             );
-            let target =
-                Target { pose, feed_forward: Twist { linear: along, angular: Vec3::ZERO } };
+            let feed_forward = Twist { linear: along, angular: Vec3::ZERO };
+            let rows = black_box(pose.to_matrix());
             let before = Instant::now();
-            servo.step(&q, target).unwrap();
+            if of_matrix {
+                let pose = Pose::from_matrix(rows).unwrap();
+                let step = servo.step(&q, Target { pose, feed_forward }).unwrap();
+                black_box(step.pose.to_matrix());
+            } else {
+                servo.step(&q, Target { pose, feed_forward }).unwrap();
+            }
             velocities.copy_from_slice(servo.joint_velocities());
             let time = before.elapsed().as_nanos();
             servo.advance(&mut q);
@@ -146,8 +154,12 @@ fn a_step_from_cpp_beside_one_from_rust() {
         let text = output(Command::new(&program).arg("200000"));
         let cpp = text.strip_prefix("median ").and_then(|rest| rest.split_once(" us"));
         let cpp: f64 = cpp.unwrap().0.parse().unwrap();
-        let rust = median_step(200_000);
-        println!("panda, us a step: C++ {cpp:.3}, Rust {rust:.3}: {:+.0} ns", 1e3 * (cpp - rust));
+        let [rust, matrix] = [false, true].map(|of_matrix| median_step(200_000, of_matrix));
+        let [more, border] = [rust, matrix].map(|rust| 1e3 * (cpp - rust));
+        println!(
+            "panda, us a step: C++ {cpp:.3}; Rust {rust:.3}: {more:+.0} ns; Rust with matrices \
+             {matrix:.3}: {border:+.0} ns"
+        );
     }
     let text = output(Command::new(&program).args(["20000", "1"]));
     println!("{}", text.lines().take(2).collect::<Vec<_>>().join("\n"));

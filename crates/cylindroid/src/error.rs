@@ -145,6 +145,9 @@ impl Error {
     /// Returns an error for the first entry of `values` that is NaN, infinite or of a magnitude
     /// beyond `range`.
     pub fn check_within(what: &str, values: &[f64], range: f64) -> Result<()> {
+        if all_within(values, range) {
+            return Ok(());
+        }
         Self::check_finite(what, values)?;
         match values.iter().position(|x| x.abs() > range) {
             None => Ok(()),

@@ -151,22 +151,27 @@ impl Rotation {
     /// # Errors
     /// A non-finite matrix, or farther from a rotation than `tolerance::ORTHONORMAL`.
     pub fn from_matrix(m: Mat3) -> Result<Self> {
-        if !m.is_finite() {
-            return Err(Error::NotFinite { what: "rotation matrix".into(), value: f64::NAN });
-        }
         let error = (m.transpose() * m - Mat3::IDENTITY).max_abs();
-        if error > ORTHONORMAL || m.determinant() < 0.0 {
-            return Err(Error::InvalidOption {
-                option: "rotation matrix",
-                value: format!("{:?}", m.to_rows()),
-                reason: format!(
-                    "its columns must be orthonormal and right-handed; R^T R differs from 1 by \
-                     {error:.1e} and det R = {:.6}",
-                    m.determinant()
-                ),
-            });
+        if error <= ORTHONORMAL && m.determinant() > 0.0 && m.is_finite() {
+            return Ok(Self { matrix: m }.renormalised());
         }
-        Ok(Self { matrix: m }.renormalised())
+        Err(Self::refused(m, error))
+    }
+
+    #[cold]
+    fn refused(m: Mat3, error: f64) -> Error {
+        if !m.is_finite() {
+            return Error::NotFinite { what: "rotation matrix".into(), value: f64::NAN };
+        }
+        Error::InvalidOption {
+            option: "rotation matrix",
+            value: format!("{:?}", m.to_rows()),
+            reason: format!(
+                "its columns must be orthonormal and right-handed; R^T R differs from 1 by \
+                 {error:.1e} and det R = {:.6}",
+                m.determinant()
+            ),
+        }
     }
 
     /// Trusts the caller that `m` is a rotation (checked in debug builds).
@@ -231,13 +236,18 @@ impl Rotation {
         Quaternion::of_matrix(self.matrix)
     }
 
-    /// The same rotation with the rounding of many products removed (one Newton step).
+    /// The same rotation with the rounding of many products removed (Newton's steps); a matrix that is
+    /// orthonormal to a few roundings stays as it is.
     #[must_use]
     pub fn renormalised(self) -> Self {
         let mut m = self.matrix;
-        // Two steps: from 1e-5 (six printed digits) to 1e-10 to rounding.
+        // From 1e-5 (six printed digits) to 1e-10 to rounding.
         for _ in 0..2 {
-            m = m * (Mat3::IDENTITY * 3.0 - m.transpose() * m) * 0.5;
+            let error = Mat3::IDENTITY - m.transpose() * m;
+            if error.max_abs() <= 4.0 * f64::EPSILON {
+                break;
+            }
+            m = m * (Mat3::IDENTITY + error * 0.5);
         }
         Self { matrix: m }
     }
