@@ -1,6 +1,6 @@
 //! Maps: the workspace in the coordinates of the platform, with singularity loci.
 
-use cylindroid::sweep::{Locus, Map, MapOptions, Surface, WorkingMode};
+use cylindroid::sweep::{Locus, LocusKind, Map, MapOptions, Surface, WorkingMode};
 use cylindroid::{Error, Mechanism};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
@@ -149,6 +149,45 @@ impl PyWorkspaceMap {
         dict.set_item("size", region.size)?;
         dict.set_item("is_cut", region.is_cut)?;
         dict.set_item("holes", PyList::new(py, holes.collect::<PyResult<Vec<_>>>()?)?)?;
+        Ok(dict)
+    }
+
+    /// The sections of the surfaces of a mode with the plane of the cells at a place along the third axis.
+    ///
+    /// They separate the cells of both signs of 'type_two'.
+    ///
+    /// Parameters
+    /// ----------
+    /// mode : int
+    ///     One of `modes`, from 0.
+    /// place : int
+    ///     The number of the value on the third axis, from 0.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to ndarray, (S, 2, 2)
+    ///     For each kind the segments: the values of the first two axes at both ends.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidOptionError
+    ///     For a mode or a place that there is not.
+    fn section<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] mode: usize,
+        #[pyo3(from_py_with = argument)] place: usize,
+    ) -> Result<Bound<'py, PyDict>> {
+        let segments = self.map.section(mode, place as u64)?;
+        let dict = PyDict::new(py);
+        for kind in LocusKind::ALL {
+            let own = segments.iter().filter(|segment| segment.0 == kind);
+            let ends: Vec<f64> = own.flat_map(|segment| segment.1).flatten().collect();
+            if !ends.is_empty() {
+                let count = ends.len() / 4;
+                dict.set_item(kind.name(), ends.into_pyarray(py).reshape([count, 2, 2])?)?;
+            }
+        }
         Ok(dict)
     }
 

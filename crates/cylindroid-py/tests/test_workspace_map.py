@@ -144,3 +144,30 @@ def test_a_mode_is_drawn(found):
     line = cy.workspace_map(cy.load("five-bar"), {"x": (0.5, 1.5, 3)}, at={"y": 1.5})
     with pytest.raises(ValueError, match="axes"):
         plot.map(line)
+
+
+def test_slices_of_three_axes():
+    pytest.importorskip("matplotlib")
+    from cylindroid import plot
+
+    over = {"x": (-0.31, 0.29, 7), "y": (-0.29, 0.33, 7), "rz": (-1.57, 1.53, 9)}
+    found = cy.workspace_map(cy.load("3rrr"), over, starts=16)
+    drawn = 0
+    for mode in range(len(found.modes)):
+        for place in range(9):
+            sections = found.section(mode, place)
+            assert all(segments.shape[1:] == (2, 2) for segments in sections.values())
+            drawn += sum(len(segments) for segments in sections.values())
+    assert drawn > 20
+    mode = found.surfaces[0]["mode"]
+    place = next(place for place in range(9) if found.section(mode, place))
+    ax = plot.map(found, mode=mode, place=place)
+    value = np.linspace(-1.57, 1.53, 9)[place]
+    assert ax.get_title() == f"rz = {value:.4g}" and ax.get_legend() is not None
+    assert plot.map(found).get_title() == f"rz = {-0.02:.4g}"
+    with pytest.raises(ValueError, match="place is 9"):
+        plot.map(found, place=9)
+    with pytest.raises(cy.InvalidOptionError, match="'rz' has 9 values"):
+        found.section(0, 9)
+    with pytest.raises(cy.InvalidOptionError, match="modes"):
+        found.section(99, 0)

@@ -168,12 +168,9 @@ fn panel(map: &Map, shown: Shown, area: &Area<'_>) -> Drawn {
         chart.draw_series(LineSeries::new(points, colour(locus.kind).stroke_width(2)))?;
     }
     if let Some(place) = shown.slice {
-        let value = map.axes[2].value(place);
-        for surface in map.surfaces.iter().filter(|surface| surface.mode == shown.mode) {
-            for ends in surface.section(value, place == 0) {
-                let style = colour(surface.kind).stroke_width(2);
-                chart.draw_series(LineSeries::new(ends.map(|[x, y]| (x, y)), style))?;
-            }
+        for (kind, ends) in map.section(shown.mode, place)? {
+            let ends = ends.map(|[x, y]| (x, y));
+            chart.draw_series(LineSeries::new(ends, colour(kind).stroke_width(2)))?;
         }
     }
     Ok(())

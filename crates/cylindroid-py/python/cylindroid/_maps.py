@@ -22,6 +22,7 @@ def map(
     *,
     log: bool = False,
     mode: int = 0,
+    place: int | None = None,
 ) -> Any:
     """A sweep as a slice, a cloud of points, or a histogram; a working mode of a map with its loci.
 
@@ -33,7 +34,8 @@ def map(
     ----------
     columns : mapping of str to array_like, (N,)
         As `cylindroid.sweep` returns them; a DataFrame is one too. Of a `WorkspaceMap` over two axes
-        one mode is drawn, with the curves that belong to it.
+        one mode is drawn, with the curves that belong to it; over three axes a slice of it, with the
+        sections of its surfaces.
     color : str, optional
         The column that colours cells or points; values that are not finite are left out. A slice
         needs one. Default for a `WorkspaceMap`: 'type_two'.
@@ -46,13 +48,15 @@ def map(
         Logarithmic colours, or numbers of a histogram.
     mode : int
         The working mode of a `WorkspaceMap`.
+    place : int, optional
+        Of three axes the number of the value on the third one, from 0. Default: in the middle.
 
     Returns
     -------
     The axes.
     """
     if isinstance(columns, WorkspaceMap):
-        return _mode(columns, mode, color, ax, log)
+        return _mode(columns, mode, place, color, ax, log)
     x = "x" if x is None else x
     names = [name for name in (x, y, z, color) if name is not None]
     for name in names:
@@ -107,15 +111,29 @@ def map(
 _COLORS = {"type I": "tab:blue", "type II": "tab:red", "passive": "dimgray", "limit": "tab:green"}
 
 
-def _mode(found: WorkspaceMap, mode: int, color: str | None, ax: Any, log: bool) -> Any:
-    """One working mode of a map over two axes, and its loci."""
-    if len(found.axes) != 2:
-        more = "; `surfaces` has triangles for plot_trisurf" if len(found.axes) == 3 else ""
-        raise ValueError(f"the map has {len(found.axes)} axes; two can be drawn{more}")
+def _mode(
+    found: WorkspaceMap, mode: int, place: int | None, color: str | None, ax: Any, log: bool
+) -> Any:
+    """One working mode of a map over two axes with its loci, or a slice of one over three."""
+    if len(found.axes) not in (2, 3):
+        raise ValueError(f"the map has {len(found.axes)} axes; two or three can be drawn")
     if not 0 <= mode < len(found.modes):
         raise ValueError(f"mode is {mode}, the map has {len(found.modes)} modes, from 0 on")
-    x, y = found.axes
-    ax = map(found.modes[mode], color or "type_two", x, y, ax=ax, log=log)
+    x, y, *third = found.axes
+    columns, sections = found.modes[mode], {}
+    if third:
+        count = found.axes[third[0]][2]
+        place = count // 2 if place is None else place
+        if not 0 <= place < count:
+            raise ValueError(f"place is {place}, '{third[0]}' has {count} values, from 0 on")
+        columns = {name: values[place::count] for name, values in columns.items()}
+        sections = found.section(mode, place)
+    ax = map(columns, color or "type_two", x, y, ax=ax, log=log)
+    if third:
+        ax.set_title(f"{third[0]} = {columns[third[0]][0]:.4g}")
+    for kind, segments in sections.items():
+        ends = np.pad(segments, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan)
+        ax.plot(*ends.reshape(-1, 2).T, color=_COLORS[kind], label=kind)
     named = set()
     for locus in found.loci:
         kind = locus["kind"]
@@ -123,7 +141,7 @@ def _mode(found: WorkspaceMap, mode: int, color: str | None, ax: Any, log: bool)
             label = None if kind in named else kind
             named.add(kind)
             ax.plot(*locus["points"].T, color=_COLORS[kind], label=label)
-    if named:
+    if named or sections:
         ax.legend(loc="best")
     return ax
 

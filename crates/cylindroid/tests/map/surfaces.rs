@@ -124,9 +124,8 @@ fn sections_separate_the_signs() {
     for place in 0..third.count {
         let value = third.value(place);
         for (number, mode) in map.modes.iter().enumerate() {
-            let own = map.surfaces.iter().filter(|surface| surface.mode == number);
-            let segments: Vec<_> =
-                own.flat_map(|surface| surface.section(value, place == 0)).collect();
+            let sections = map.section(number, place).unwrap();
+            let segments: Vec<_> = sections.into_iter().map(|(_, ends)| ends).collect();
             for [x, y] in segments.iter().flatten() {
                 let value = residual([*x, *y, value], Pose::IDENTITY, 1.0);
                 assert!(value.abs() < 1e-8, "{value} at {x} {y}");
@@ -158,6 +157,9 @@ fn sections_separate_the_signs() {
     assert!(ends > 300 && crossed > 50, "{ends} {crossed}");
     let beyond = map.surfaces.iter().flat_map(|s| s.section(third.to + 0.1, false));
     assert_eq!(beyond.count(), 0);
+    let refused = |mode, place| map.section(mode, place).unwrap_err().to_string();
+    assert!(refused(0, 9).contains("'rz' has 9 values"), "{}", refused(0, 9));
+    assert!(refused(99, 0).contains("modes"), "{}", refused(99, 0));
 }
 
 /// Of a 3-RRR with eight modes, none of which reaches all cells: here all edges have their vertices, and a

@@ -156,6 +156,14 @@ fn whole_robots(world: &mut World) {
         ..MapOptions::default()
     };
     Map::of(&five_bar, map).into_iter().for_each(|map| world.keep(map));
+    world.keep(Surface {
+        kind: LocusKind::TypeTwo,
+        mode: 0,
+        closed: false,
+        vertices: vec![[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.1, 0.1]],
+        triangles: vec![[0, 1, 2]],
+        q: vec![Vec::new(); 3],
+    });
     let poses = [Pose::IDENTITY, Pose::from_translation(Vec3::X), Pose::IDENTITY];
     let bounds = KinematicBounds { velocity: 1.0, acceleration: 1.0, jerk: f64::INFINITY };
     let bounds = CartesianBounds { linear: bounds, angular: bounds };

@@ -364,6 +364,7 @@ values! {
     sweep::Statistic,
     sweep::Statistics,
     sweep::Summary,
+    sweep::Surface,
     sweep::Sweep,
     sweep::SweepOptions,
     sweep::Table,

@@ -185,12 +185,41 @@ impl Map {
     /// # Errors
     /// A number that is not below the number of modes.
     pub fn workspace_of(&self, mode: usize) -> Result<Region> {
-        let own = self.modes.get(mode).ok_or_else(|| Error::InvalidOption {
+        Ok(region::region(&Grid::new(&self.axes), &[self.mode(mode)?]))
+    }
+
+    fn mode(&self, mode: usize) -> Result<&WorkingMode> {
+        self.modes.get(mode).ok_or_else(|| Error::InvalidOption {
             option: "mode",
             value: mode.to_string(),
             reason: format!("the map has {} modes, from 0 on", self.modes.len()),
+        })
+    }
+
+    /// The sections of the surfaces of a mode with the plane of the cells at a place along the third axis:
+    /// the values of the other axes at both ends of each segment. They separate the cells of both signs.
+    ///
+    /// # Errors
+    /// A mode that there is not; a place beyond the third axis, or a map without one.
+    pub fn section(&self, mode: usize, place: u64) -> Result<Vec<(LocusKind, [[f64; 2]; 2])>> {
+        self.mode(mode)?;
+        let third = self.axes.get(2).filter(|axis| place < axis.count);
+        let third = third.ok_or_else(|| Error::InvalidOption {
+            option: "place",
+            value: place.to_string(),
+            reason: match self.axes.get(2) {
+                None => format!("the map has {} axes, a section needs three", self.axes.len()),
+                Some(axis) => {
+                    format!("'{}' has {} values, from 0 on", axis.name, axis.count)
+                }
+            },
         })?;
-        Ok(region::region(&Grid::new(&self.axes), &[own]))
+        let own = self.surfaces.iter().filter(|surface| surface.mode == mode);
+        let of = |surface: &Surface| {
+            let segments = surface.section(third.value(place), place == 0);
+            segments.into_iter().map(|ends| (surface.kind, ends)).collect::<Vec<_>>()
+        };
+        Ok(own.flat_map(of).collect())
     }
 
     /// The unit of the size of a region, such as "m^2" or "m rad": of the axes with several values.

@@ -12,6 +12,7 @@ calls! {
     sweep::Map::cells;
     sweep::Map::of;
     sweep::Map::run = |m: &'static Mechanism, options: MapOptions, threads: Option<NonZeroUsize>, go_on: bool| Map::run(m, options, threads, |_| go_on);
+    sweep::Map::section;
     sweep::Map::size_unit;
     sweep::Map::unit;
     sweep::Map::values;
@@ -34,6 +35,7 @@ calls! {
     sweep::Source::pose_columns;
     sweep::Source::poses;
     sweep::Statistic::name;
+    sweep::Surface::section;
     sweep::Sweep::check_memory;
     sweep::Sweep::collect = |s: &'static Sweep, threads: Option<NonZeroUsize>, go_on: bool| s.collect(threads, |_| go_on);
     sweep::Sweep::columns;
