@@ -296,18 +296,6 @@ fn printed_digits_are_repaired() {
     }
 }
 
-/// A rotation to rounding comes back to the bit: what a program hands over as a matrix and reads again.
-#[test]
-fn matrices_of_rotations_stay_as_they_are() {
-    let mut random = Random(10);
-    for _ in 0..100 {
-        let pose = Pose { rotation: random.rotation().renormalised(), translation: Vec3::X };
-        let again = Pose::from_matrix(pose.to_matrix()).unwrap();
-        assert_eq!(again.to_matrix(), pose.to_matrix());
-        assert_eq!(again.rotation.renormalised().matrix(), pose.rotation.matrix());
-    }
-}
-
 /// Never NaN for finite input, however long or short; always a rotation.
 #[test]
 fn exp_and_unit_of_any_length() {

@@ -4,13 +4,14 @@
 //!          as they are (the gap of Frank & Wolfe): a linear program, solved by another method than
 //!          the active set
 //! Valid    steps of at most `FAR` in each unknown; rows that bind to less than 1e-12 count as kept; bounds
-//!          of rows to `ROUNDING` of the farthest point so far; levels keep their rows but for
-//!          `DEPENDENT` of the motion, and leave what singular values below `Precision::STRAIGHT` could
-//!          gain. Bounds that higher levels hold count as kept: that each is needed is checked apart, by
-//!          what its level would gain without it. After levels whose rank, alone or with these bounds, is
-//!          not clear (`UNCLEAR`), and at points where the bounds that bind nearly depend on one another
-//!          (`AMPLIFIED`), points are feasible and keep the levels, but need not be the best: directions
-//!          are known to a rounding divided by the singular value. Such problems are counted and few
+//!          of rows and values of levels to `ROUNDING` of the farthest point so far; levels keep their
+//!          rows but for `DEPENDENT` of the motion, and leave what singular values below
+//!          `Precision::STRAIGHT` could gain. Bounds that higher levels hold count as kept: that each is
+//!          needed is checked apart, by what its level would gain without it. After levels whose rank,
+//!          alone or with these bounds, is not clear (`UNCLEAR`), and at points where the bounds that bind
+//!          nearly depend on one another (`AMPLIFIED`), points are feasible and keep the levels, but need
+//!          not be the best: directions are known to a rounding divided by the singular value. Such
+//!          problems are counted and few
 //! Why so   a referee in a fuzzer must be fast and must not share decisions with the solver but for what
 //!          these lines say: what counts as dependent and as weak, and which bounds are held. Only
 //!          directions that the kept rows lose to rounding are tried. A level that leaves a weak
@@ -258,7 +259,8 @@ fn check_kept(problem: &Problem, kept: &[Kept], set: &ActiveSet, farthest: f64) 
     for Kept { row, value, scale, at } in kept {
         let (now, size) = product(row, y);
         let moved: Vec<f64> = y.iter().zip(at).map(|(y, at)| y - at).collect();
-        let slack = 1e-9 * (1.0 + value.abs()) + ROUNDING * size + DEPENDENT * scale * norm(&moved);
+        let rounding = ROUNDING * (size + norm(row) * farthest);
+        let slack = 1e-9 * (1.0 + value.abs()) + rounding + DEPENDENT * scale * norm(&moved);
         assert!((now - value).abs() <= slack, "a level moved from {value:e} to {now:e}");
     }
 }
