@@ -190,7 +190,14 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         "optimise" => {
             let vary = ["--vary", "crank=0.3:0.8", "--minimise", "anisotropy", "--designs", "9"];
             let workspace = ["--over", "point_x=0:0.1:2", "--starts", "1", "--evaluations", "20"];
-            vec![with(&[DESIGNS], &[vary, workspace].concat())]
+            const ARM: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/three-links.toml");
+            std::fs::write(ARM, crate::optimise::THREE_LINKS).unwrap();
+            let of_arm = ["--vary", "b=0.2:2", "--minimise", "condition", "--relative-to", "upper"];
+            let short = ["--designs", "3", "--starts", "1", "--evaluations", "20"];
+            vec![
+                with(&[DESIGNS], &[vary, workspace].concat()),
+                [&[ARM], &of_arm[..], &short].concat(),
+            ]
         }
         // A limit that ends a mode has a key of its own.
         "map" => vec![

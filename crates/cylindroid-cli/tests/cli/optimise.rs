@@ -99,7 +99,7 @@ fn a_design_as_seen_from_a_moving_frame() {
     assert!(unknown.contains("upper"), "{unknown}");
 }
 
-const THREE_LINKS: &str = r#"
+pub(crate) const THREE_LINKS: &str = r#"
 dimension = 2
 reference = "hand"
 reference_point = ["2 + b", 0]
