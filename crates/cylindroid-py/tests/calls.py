@@ -44,7 +44,7 @@ SRDF = """<robot name="panda">
 <group_state name="up" group="forearm"><joint name="panda_joint6" value="1.0"/></group_state>
 <end_effector name="grip" parent_link="link7" group="hand" parent_group="forearm"/>
 <disable_collisions link1="link1" link2="link2" reason="Adjacent"/></robot>"""
-PLANAR, SPACE = cy.load("3rrr"), {"x": (-0.01, 0, 2), "y": (0, 0.01, 2), "rz": (0.1, 0.2, 2)}
+PLANAR, GRID = cy.load("3rrr"), {"x": (-0.01, 0, 2), "y": (0, 0.01, 2), "rz": (0.1, 0.2, 2)}
 DESIGN = cy.parse("""
 dimension = 2
 reference = "hand"
@@ -390,8 +390,8 @@ def calls():
          {"mechanism": PLANAR, "over": {"x": (-0.05, 0.05, 2)}, "at": {"rz": 0.1}, "free": ["y"],
           "frame": PLANAR.reference, "tool": np.eye(4), "q": PLANAR.home, "starts": 2, "seed": 1,
           "loci": False, "threads": 1}),
-        ("WorkspaceMap.workspace", cy.workspace_map(PLANAR, SPACE).workspace, {"mode": 0}),
-        ("WorkspaceMap.section", cy.workspace_map(PLANAR, SPACE).section, {"mode": 0, "place": 0}),
+        ("WorkspaceMap.workspace", cy.workspace_map(PLANAR, GRID).workspace, {"mode": 0}),
+        ("WorkspaceMap.section", cy.workspace_map(PLANAR, GRID).section, {"mode": 0, "place": 0}),
         ("singularity_free_zone", cy.singularity_free_zone,
          {"mechanism": PLANAR, "components": ["x", "y"], "shape": "box", "scales": [1.0, 0.5],
           "at": {"rz": 0.1}, "free": None, "frame": PLANAR.reference, "tool": np.eye(4),
