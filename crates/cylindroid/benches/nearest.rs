@@ -1,6 +1,7 @@
 //! Times of the nearest solution of inverse kinematics, and of targets without one; with `--compare`
 //! also its distance against that of a search of 1000 starts:
-//! `cargo bench -p cylindroid --bench nearest -- [--compare] [ROBOT ...] [file.urdf:frame ...]`.
+//! `cargo bench -p cylindroid --bench nearest -- [--compare] [--seed=N] [ROBOT ...]
+//! [file.urdf:frame ...]`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
@@ -135,7 +136,9 @@ fn rows(name: &str, robot: &Mechanism, tool: EndEffector) {
 
 /// Configurations within the limits, or half a turn where they are wider.
 fn drawn(robot: &Mechanism) -> impl FnMut() -> Vec<f64> + '_ {
-    let mut state = 9_u64;
+    let mut state: u64 = std::env::args()
+        .find_map(|a| a.strip_prefix("--seed=").map(|seed| seed.parse().unwrap()))
+        .unwrap_or(9);
     let mut one = move |c: &Coordinate| {
         state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

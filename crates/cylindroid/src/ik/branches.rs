@@ -2,30 +2,47 @@
 //! branches may come closer to the preferred configuration.
 //!
 //! Formula  of the segment between two ends of branches A and B the point closest to the preferred
-//!          configuration p: A + t (B - A), t = (p - A) (B - A) / |B - A|^2
+//!          configuration p: A + t (B - A), t = (p - A) (B - A) / |B - A|^2;
+//!          a condition a cos x + b sin x = c of the closed form has no solution where
+//!          c / sqrt(a^2 + b^2) is beyond -1 or 1, and some between values where it is beyond
+//!          different ones
 //! Shapes   a solution: the value of the locked joint and the six angles of the closed form
 //! Units    rad
-//! Valid    branches shorter than a sampling step may be missed if both of their ends are folds
+//! Valid    a branch that begins and ends between two samples where its condition is missed on the
+//!          same side is found if straight lines through two misses on either side foretell it
 //! Why so   near a singularity two joints swing by a large angle while the locked joint hardly moves:
-//!          no sample of it lies on the swing, which is nearly straight, and often comes closest
+//!          no sample of it lies on the swing, which is nearly straight, and often comes closest.
+//!          Joints may leave their limits on it, and come back a full turn away: points of it are
+//!          wrapped one by one. It turns them by less than half a turn, as the direction of a point
+//!          that passes by an axis
 //! Checked  src/ik/nearest.rs (against 1000 random restarts)
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// Sampling step of the locked joint [rad].
 pub(super) const STEP: f64 = 0.1;
-/// Solutions of neighbouring samples whose coordinates differ by less are on one branch [rad].
+/// Solutions of neighbouring samples with the same signs of roots whose coordinates differ by less
+/// are on one branch [rad].
 const SAME_BRANCH: f64 = 0.6;
+/// Solutions outside the limits by less are clamped to them and corrected [rad].
+const NEARLY_WITHIN: f64 = 0.3;
 /// Subtracted from lower bounds: a branch may bend between its samples [rad].
 const MARGIN: f64 = 0.3;
 /// The same for segments between ends of branches [rad].
 const SEGMENT_MARGIN: f64 = 0.1;
+/// Into so many parts a swing is divided.
+const SWING_POINTS: i32 = 16;
 
 /// A candidate for one value of the locked joint, a solution up to rounding if it is within the limits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     pub(super) value: f64,
     pub(super) angles: [f64; 6],
+    /// The angles before they were clamped to the limits.
+    pub(super) wrapped: [f64; 6],
+    /// The signs of roots by joint, the same along a branch.
+    pub(super) branch: u8,
     /// Squared distance from the preferred configuration.
     pub(super) far: f64,
     /// Displacement that clamped it to the limits: it is then no solution, but may be near one.
@@ -33,6 +50,11 @@ pub(super) struct Sample {
 }
 
 impl Sample {
+    /// True if it is within the limits, or nearly: a place from which a descent may begin.
+    fn may_begin(&self) -> bool {
+        self.excluded < NEARLY_WITHIN
+    }
+
     /// Largest difference of a coordinate.
     fn difference(&self, other: &Self) -> f64 {
         let apart = |m: f64, (a, b): (&f64, &f64)| m.max((a - b).abs());
@@ -82,7 +104,36 @@ struct Group {
     value: f64,
     /// Solutions of the closed form, also those outside the limits.
     solutions: usize,
+    /// By how much conditions of the closed form miss a solution, beyond -1 or 1; 0 of the others.
+    misses: [f64; 7],
     own: Range<usize>,
+}
+
+impl Group {
+    /// True if a branch begins or ends between two neighbouring values: they have different numbers
+    /// of solutions, or conditions miss them on opposite sides.
+    fn folds_before(&self, next: &Self) -> bool {
+        let cross = |(a, b): (&f64, &f64)| a * b < 0.0;
+        self.solutions != next.solutions || self.misses.iter().zip(&next.misses).any(cross)
+    }
+
+    /// True if a condition misses its solutions at four neighbouring values, the less the closer to
+    /// the middle, such that it may have one there: the lines on both sides meet below 1.
+    fn dips([before, left, right, after]: [&Self; 4]) -> bool {
+        (0..7).any(|i| {
+            let [far, near, other, beyond] =
+                [before, left, right, after].map(|g| g.misses[i].abs());
+            if [before, left, right, after].iter().any(|g| g.misses[i] == 0.0) {
+                return false;
+            }
+            let down = (near - far) / (left.value - before.value);
+            let up = (beyond - other) / (after.value - right.value);
+            let width = right.value - left.value;
+            // Where  near + down x = other - up (width - x).
+            let place = (other - up * width - near) / (down - up);
+            down < 0.0 && up > 0.0 && near + down * place < 1.0
+        })
+    }
 }
 
 /// The value that is sampled as number k, in steps: 0, 1, -1, 2, -2, ...
@@ -92,38 +143,60 @@ pub(super) const fn index_of(k: i32) -> i32 {
 
 impl Samples {
     /// Groups the samples from `first` on, of a value with this number of solutions inside and outside
-    /// the limits.
-    pub(super) fn end_group(&mut self, first: usize, value: f64, solutions: usize) {
+    /// the limits, and these misses of conditions.
+    pub(super) fn end_group(
+        &mut self,
+        first: usize,
+        value: f64,
+        (solutions, misses): (usize, [f64; 7]),
+    ) {
         let own = first..self.all.len();
         let place = self.groups.partition_point(|group| group.value < value);
-        self.groups.insert(place, Group { value, solutions, own });
+        self.groups.insert(place, Group { value, solutions, misses, own });
     }
 
-    /// The middle between two neighbouring values with different numbers of solutions, of the gaps
+    /// The middle between two neighbouring values between which a branch begins or ends, of the gaps
     /// from `place` on, if they are further apart than `least`; and the place of the gap.
     pub(super) fn fold_between(&self, place: usize, least: f64) -> Option<(usize, f64)> {
-        let gaps = self.groups.windows(2).enumerate().skip(place);
-        gaps.filter(|(_, gap)| gap[0].solutions != gap[1].solutions)
-            .find(|(_, gap)| gap[1].value - gap[0].value > least)
-            .map(|(i, gap)| (i, 0.5 * (gap[0].value + gap[1].value)))
+        let groups = &self.groups;
+        let is_fold = |i: usize| {
+            let around = |i: usize| [&groups[i - 1], &groups[i], &groups[i + 1], &groups[i + 2]];
+            let dips = i > 0 && i + 2 < groups.len() && Group::dips(around(i));
+            dips || groups[i].folds_before(&groups[i + 1])
+        };
+        let width = |i: usize| groups[i + 1].value - groups[i].value;
+        (place..groups.len().saturating_sub(1))
+            .find(|&i| width(i) > least && is_fold(i))
+            .map(|i| (i, 0.5 * (groups[i].value + groups[i + 1].value)))
     }
 
     /// The sample on the same branch among those of another value.
     fn on_branch(&self, sample: &Sample, group: Option<&Group>) -> Option<&Sample> {
-        let near = self.all[group?.own.clone()].iter().map(|s| (s.difference(sample), s));
+        let others = self.all[group?.own.clone()]
+            .iter()
+            .filter(|s| s.branch == sample.branch && s.may_begin());
+        let near = others.map(|s| (s.difference(sample), s));
         let near = near.min_by(|a, b| a.0.total_cmp(&b.0));
         near.filter(|(apart, _)| *apart < SAME_BRANCH).map(|(_, other)| other)
     }
 
     /// Samples that are closer than their neighbours on the same branch, and points between ends of
     /// branches, the closest first.
-    pub(super) fn places(&self, preferred: (f64, &[f64; 6]), closest: f64) -> Vec<Place> {
+    pub(super) fn places(
+        &self,
+        preferred: (f64, &[f64; 6]),
+        within_limits: &impl Fn([f64; 6]) -> ([f64; 6], f64),
+        closest: f64,
+    ) -> Vec<Place> {
         let mut places = Vec::new();
         let mut ends: Vec<(usize, Sample, Option<Sample>)> = Vec::new();
         let of_groups = self.groups.iter().enumerate();
         for (g, sample) in
             of_groups.flat_map(|(g, group)| self.all[group.own.clone()].iter().map(move |s| (g, s)))
         {
+            if !sample.may_begin() {
+                continue;
+            }
             let around = [g.checked_sub(1).map(|g| &self.groups[g]), self.groups.get(g + 1)];
             let sides = around.map(|group| self.on_branch(sample, group));
             for i in 0..2 {
@@ -144,6 +217,14 @@ impl Samples {
                 if let (1, Some(behind)) = (gap.len(), behind) {
                     places.extend(segment(&behind.towards(a, 2.0)));
                 }
+            }
+        }
+        for gap in self.groups.windows(2) {
+            let [before, after] = [&gap[0], &gap[1]].map(|group| &self.all[group.own.clone()]);
+            for a in before {
+                let others = after.iter().filter(|b| b.branch == a.branch);
+                places
+                    .extend(others.filter_map(|b| swing(a, b, preferred, within_limits, closest)));
             }
         }
         places.sort_by(|a, b| a.sample.far.total_cmp(&b.sample.far));
@@ -169,6 +250,36 @@ fn segment(a: &Sample, b: &Sample, preferred: (f64, &[f64; 6]), closest: f64) ->
     let far = point.squared_distance_from(preferred);
     let bound = far.sqrt() - SEGMENT_MARGIN;
     (bound < closest).then_some(Place { bound, sample: Sample { far, ..point } })
+}
+
+/// The point closest to the preferred configuration of a swing, the segment between two neighbouring
+/// samples of one branch that are far apart: of points on it that `within_limits` wraps, clamps and
+/// tells the displacement of. Each joint may leave its limits and come back a full turn away.
+fn swing(
+    a: &Sample,
+    b: &Sample,
+    preferred: (f64, &[f64; 6]),
+    within_limits: &impl Fn([f64; 6]) -> ([f64; 6], f64),
+    closest: f64,
+) -> Option<Place> {
+    let ways: [f64; 6] = std::array::from_fn(|i| {
+        let apart = b.wrapped[i] - a.wrapped[i];
+        apart - TAU * (apart / TAU).round()
+    });
+    if ways.iter().all(|way| way.abs() < SAME_BRANCH) {
+        return None;
+    }
+    let points = (1..SWING_POINTS).filter_map(|k| {
+        let t = f64::from(k) / f64::from(SWING_POINTS);
+        let (angles, excluded) = within_limits(std::array::from_fn(|i| a.wrapped[i] + t * ways[i]));
+        let value = a.value + t * (b.value - a.value);
+        let point = Sample { value, angles, excluded: f64::MIN_POSITIVE, ..*a };
+        let far = point.squared_distance_from(preferred);
+        (excluded < NEARLY_WITHIN).then_some(Sample { far, ..point })
+    });
+    let sample = points.min_by(|p, q| p.far.total_cmp(&q.far))?;
+    let bound = sample.far.sqrt() - MARGIN;
+    (bound < closest).then_some(Place { bound, sample })
 }
 
 /// A lower bound of the distances on the branch between the neighbours of a sample; `None` if a

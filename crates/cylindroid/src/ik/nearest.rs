@@ -3,12 +3,14 @@
 //!
 //! Method   one restart from the preferred configuration; then the locked joint of the closed form
 //!          is sampled outwards from its preferred value, until its own displacement exceeds the
-//!          distance of the best solution, and more finely where branches end. Solutions that are closer than their neighbours on the
-//!          same branch, and points between ends of branches (`branches.rs`), are corrected by a few
-//!          Newton steps and are the start of a descent along the self-motion, in the order of
-//!          their distance, as long as it can come closer than the best: the distance changes by
-//!          no more than the configuration.
-//! Valid    branches and gaps shorter than a sampling step may be missed
+//!          distance of the best solution, and more finely where branches begin or end. Solutions that
+//!          are closer than their neighbours on the same branch, and points of swings and between
+//!          ends of branches (`branches.rs`), are corrected by a few Newton steps and are the start of
+//!          a descent along the self-motion, in the order of their distance, as long as it can come
+//!          closer than the best: the distance changes by no more than the configuration.
+//! Valid    up to the tolerances of solutions, which next to a singularity let joints move by 1e-3;
+//!          a branch that begins and ends between two samples, on the same side of the condition
+//!          that it violates there, is found where the samples around foretell it
 //! Why so   the samples cover all branches for the price of a few random restarts, which reach some
 //!          branches rarely
 //! Checked  tests in this file (against 1000 random restarts), tests/it/ik.rs
@@ -26,8 +28,6 @@ use crate::error::Result;
 use crate::scalar::clamp;
 use crate::spatial::Pose;
 
-/// Solutions outside the limits by less are clamped to them and corrected [rad].
-const NEARLY_WITHIN: f64 = 0.3;
 /// Gaps between values with different numbers of solutions are halved down to this [rad]: branches
 /// end there, and swing by the root of what is left.
 const FINEST: f64 = 0.01;
@@ -159,44 +159,47 @@ impl Solver {
             let apart = value - own;
             calls += 1;
             q[locked] = value;
-            let sample = |angles: [f64; 6], excluded: f64| {
+            let sample = |(wrapped, angles): ([f64; 6], [f64; 6]), branch: u8, excluded: f64| {
                 let squares =
                     angles.iter().zip(places).map(|(x, c)| (x - self.preferred[c]).powi(2));
                 let far = squares.sum::<f64>() + apart * apart;
-                Sample { value, angles, far, excluded }
+                Sample { value, angles, wrapped, branch, far, excluded }
             };
             let (first, mut count) = (samples.all.len(), 0);
-            formulas.analytic.candidates(target, &q, |analytic, angles, free| {
-                let (angles, excluded) = analytic.clamped(angles, &near);
-                let mut candidate = sample(angles, excluded);
-                if !candidate.far.is_finite() {
-                    return false;
-                }
-                // Only the closest one is verified, as its distance bounds the search; starts of
-                // descents are corrected.
-                let is_closest = is_accepted && candidate.far < best;
-                if excluded == 0.0 && (is_closest || !is_exact || free != [false; 6]) {
-                    let Some(found) = analytic.confirmed(angles, free, &target, &near) else {
+            let misses =
+                formulas.analytic.candidates(target, &q, |analytic, angles, (free, branch)| {
+                    let (wrapped, angles, excluded) = analytic.wrapped(angles, &near);
+                    let mut candidate = sample((wrapped, angles), branch, excluded);
+                    if !candidate.far.is_finite() {
                         return false;
-                    };
-                    candidate = sample(found.q, 0.0);
-                    if is_accepted {
-                        best = best.min(candidate.far);
                     }
-                }
-                count += 1;
-                if excluded < NEARLY_WITHIN {
+                    // Only the closest one is verified, as its distance bounds the search; starts of
+                    // descents are corrected.
+                    let is_closest = is_accepted && candidate.far < best;
+                    if excluded == 0.0 && (is_closest || !is_exact || free != [false; 6]) {
+                        let Some(found) = analytic.confirmed(angles, free, &target, &near) else {
+                            return false;
+                        };
+                        candidate = sample((found.q, found.q), branch, 0.0);
+                        if is_accepted {
+                            best = best.min(candidate.far);
+                        }
+                    }
+                    count += 1;
                     samples.all.push(candidate);
-                }
-                excluded == 0.0
-            });
-            samples.end_group(first, value, count);
+                    excluded == 0.0
+                });
+            samples.end_group(first, value, (count, misses));
         }
         let preferred = places.map(|c| self.preferred[c]);
         if is_accepted {
             closest = best.sqrt();
         }
-        let candidates = samples.places((own, &preferred), closest);
+        let within_limits = |angles: [f64; 6]| {
+            let (_, clamped, excluded) = formulas.analytic.wrapped(angles, &near);
+            (clamped, excluded)
+        };
+        let candidates = samples.places((own, &preferred), &within_limits, closest);
         for Place { bound, sample } in candidates.into_iter().take(MAX_DESCENTS) {
             if bound >= closest {
                 continue;
@@ -232,8 +235,42 @@ mod tests {
         ends.map(|(lower, upper)| lower + (upper - lower) * uniform(random)).collect()
     }
 
+    /// Targets near a stretched elbow, whose closest solution is on a branch between two samples of
+    /// joint 7 or has its neighbours beyond the limits of others; near a zero of joint 2, about which
+    /// joints 1 and 3 swing through their limits, and of joint 6 likewise. The solutions were found by
+    /// 1000 random restarts among the first 1000 targets of `benches/nearest.rs` with seeds 9, 1 and 2.
+    #[test]
+    fn short_branches_and_swings() {
+        #[rustfmt::skip]
+        let cases = [
+            ("panda", [0.869917, 1.295120, -0.010994, -1.097940, -2.784762, 2.056014, -1.426901],
+             [2.733211775543263, 1.036025508657276, -1.9486069904286552, -0.09711107505952776, -2.8973, 0.9982328220438617, -2.363458990184495]),
+            ("panda", [1.327992, 0.248928, 2.621992, -1.024115, 1.515627, 2.829370, -1.632742],
+             [1.3131269543938902, 0.3446305270417456, 2.8973, -0.18001940157011695, 2.662960053660617, 2.4638468183453113, -0.6729788949501815]),
+            ("panda", [-2.650457, 1.074836, 0.595558, -0.259983, -1.890847, 1.235115, 0.964542],
+             [-2.8973, 0.000258251822466678, 0.2390077531443319, -0.3636725994421155, 0.7382164952521298, 2.434291365267328, 0.1874217132850843]),
+            ("panda", [-2.212107, -0.101447, -1.194594, -0.557045, 0.057192, 1.037392, 0.731117],
+             [-2.8973, -0.020782665796221907, -2.5458577820731616, -1.8159928036136164, -0.7056880568151779, 2.2659738731855668, -1.4350570819255442]),
+            ("iiwa14", [-0.449698, 1.461978, -0.108345, -0.556305, -2.746400, 0.203178, -2.439201],
+             [-1.401472746427065, 0.8110695930632541, -0.25866152216325294, 1.2868803918269274, -2.967, 0.04126112487368467, -2.8447268136255044]),
+        ];
+        for (name, start, known) in cases {
+            let robot = catalogue::load(name).unwrap();
+            let target = robot.state(&known).unwrap().pose_of(robot.tool());
+            let goals = [Goal::pose(robot.tool(), target)];
+            let initial_guess = Some(start.to_vec());
+            let options = IkOptions { nearest: true, initial_guess, ..IkOptions::default() };
+            let mut solver = Solver::new(&robot, &goals, &options).unwrap();
+            let found = solver.solve(&goals).unwrap();
+            assert!(found.success, "{name} {known:?}");
+            let (own, reference) = (solver.distance(&found.q), solver.distance(&known));
+            assert!(own < reference + 1e-4, "{name}: {own} for {reference}, at {known:?}");
+        }
+    }
+
     /// Against 1000 random restarts after the first solution, each followed along its self-motion:
-    /// no farther for 99 of 100 targets. The others are at branches shorter than a sampling step.
+    /// never farther. (Of 4000 others 4 are, by 8e-4 at most: tolerances let joints move so near
+    /// singularities; `cargo bench -p cylindroid --bench nearest -- --compare --seed=N`, N to 3.)
     #[test]
     fn nearest_against_1000_restarts() {
         let mut random = 11;
@@ -265,7 +302,7 @@ mod tests {
                 "{name}: of {targets}, {closer} closer and {farther} farther than after 1000 \
                  restarts; {few_farther} farther after 48 restarts"
             );
-            assert!(100 * farther <= targets, "{name}: {farther} of {targets}");
+            assert_eq!(farther, 0, "{name}: of {targets}");
         }
     }
 }

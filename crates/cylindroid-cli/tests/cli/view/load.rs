@@ -2,7 +2,7 @@
 
 use std::net::Shutdown;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 use std::{fs, io};
 
@@ -191,12 +191,16 @@ fn machine(stop: &AtomicBool) -> Vec<f64> {
     waits
 }
 
+/// Reads what comes to a client that looks at none of it: the server ends one that does not read.
+fn reader_of(client: &mut Client) -> JoinHandle<io::Result<u64>> {
+    let mut answers = client.socket.get_mut().try_clone().unwrap();
+    thread::spawn(move || io::copy(&mut answers, &mut io::sink()))
+}
+
 /// Sends as fast as it can and reads what comes, until it is stopped; false if the server ends it.
 fn flood(mut client: Client, message: &str, stop: &AtomicBool) -> bool {
-    let stream = client.socket.get_mut();
-    stream.set_write_timeout(Some(WAIT)).unwrap();
-    let mut answers = stream.try_clone().unwrap();
-    let reader = thread::spawn(move || io::copy(&mut answers, &mut io::sink()));
+    client.socket.get_mut().set_write_timeout(Some(WAIT)).unwrap();
+    let reader = reader_of(&mut client);
     let mut lives = true;
     while lives && !stop.load(Ordering::Relaxed) {
         lives = match client.socket.send(Message::text(message)) {
@@ -271,6 +275,7 @@ fn floods_starve_nobody() {
 fn followed(server: &Server, seconds: f64) -> (Waits, Vec<Vec<usize>>) {
     let mut driver = server.client_of("?session=loop");
     driver.next("state");
+    let reader = reader_of(&mut driver);
     let observers: Vec<Client> = (0..2)
         .map(|_| server.client_of("?session=loop&observe"))
         .map(|mut observer| {
@@ -279,14 +284,16 @@ fn followed(server: &Server, seconds: f64) -> (Waits, Vec<Vec<usize>>) {
         })
         .collect();
     let count = (100.0 * seconds) as usize;
-    let value = |k: usize| 1e-3 * (k + 1) as f64;
+    // Within the limits of the joint, however long it takes.
+    let step = 2.0 / count as f64;
+    let value = |k: usize| step * (k + 1) as f64;
     let begin = Instant::now();
     thread::scope(|scope| {
         let watch = |mut observer: Client| {
             let mut seen = Vec::new();
             while seen.last().is_none_or(|(k, _)| k + 1 < count) {
                 let q = observer.next("state")["q"][0].as_f64().unwrap();
-                let k = (q / 1e-3).round() as usize;
+                let k = (q / step).round() as usize;
                 // Home is no configuration of the loop.
                 if k > 0 && (q - value(k - 1)).abs() < 1e-9 {
                     seen.push((k - 1, begin.elapsed().as_secs_f64()));
@@ -305,6 +312,8 @@ fn followed(server: &Server, seconds: f64) -> (Waits, Vec<Vec<usize>>) {
         }
         let seen: Vec<Vec<(usize, f64)>> =
             watched.into_iter().map(|watched| watched.join().unwrap()).collect();
+        let _ = driver.socket.get_mut().shutdown(Shutdown::Both);
+        let _ = reader.join().unwrap();
         let waits = seen.iter().flatten().map(|(k, time)| time - sent[*k]).collect();
         let numbers = seen.iter().map(|s| s.iter().map(|(k, _)| *k).collect()).collect();
         (Waits::of(waits), numbers)

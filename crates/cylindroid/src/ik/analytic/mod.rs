@@ -25,7 +25,7 @@ use std::fmt;
 use self::geometry::{ArmParameters, Three};
 use self::joints::{are_revolute, axes, move_tool_only};
 use self::pieper::Target;
-use self::subproblems::Angle;
+use self::subproblems::{Angle, Misses};
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::{Damped, DampedProblem, Matrix};
@@ -220,7 +220,7 @@ impl Analytic {
         self.check(target, start)?;
         let near = self.coordinates.map(|c| start[c]);
         let mut solutions = AnalyticSolutions::NONE;
-        self.candidates(target, start, |analytic, q, free| {
+        self.candidates(target, start, |analytic, q, (free, _)| {
             solutions.note_free(&free);
             let solution = analytic.confirmed(q, free, &target, &near);
             solution.is_some_and(|solution| {
@@ -231,15 +231,16 @@ impl Analytic {
         Ok(solutions)
     }
 
-    /// Calls `visit` with the candidates of the closed form for input that was checked, each with
-    /// the joints that the pose leaves free: neither wrapped nor verified. `visit` returns whether
-    /// the candidate counts as a solution.
+    /// Calls `visit` with the candidates of the closed form for input that was checked, neither
+    /// wrapped nor verified, each with the joints that the pose leaves free and its branch, whose
+    /// bits are the signs of roots by joint. `visit` returns whether the candidate counts as a solution. Returns by how much the conditions of the closed form
+    /// miss their solutions, beyond -1 or 1; 0 of those that have one or are not reached.
     pub(super) fn candidates(
         &mut self,
         target: Pose,
         start: &[f64],
-        mut visit: impl FnMut(&mut Self, [f64; 6], [bool; 6]) -> bool,
-    ) {
+        mut visit: impl FnMut(&mut Self, [f64; 6], ([bool; 6], u8)) -> bool,
+    ) -> [f64; 7] {
         if self.locked.iter().any(|&c| self.q[c] != start[c]) {
             self.lock(start);
         }
@@ -260,36 +261,39 @@ impl Analytic {
         aim.start = angles;
         let found = |turns: &[Angle; 6]| {
             let mut q = [0.0; 6];
-            let mut free = [false; 6];
+            let (mut free, mut branch) = ([false; 6], 0);
             for (i, turn) in turns.iter().enumerate() {
                 let place = if reversed { 5 - i } else { i };
                 q[place] = turn.angle * geometry.sign[i];
                 free[place] = turn.free;
+                branch |= u8::from(turn.is_second) << i;
             }
-            visit(self, q, free)
+            visit(self, q, (free, branch))
         };
+        let misses = Misses::default();
         match three {
-            Three::Meet => pieper::meeting(&geometry, &aim, found),
-            Three::Parallel => pieper::parallel(&geometry, &aim, found),
+            Three::Meet => pieper::meeting(&geometry, &aim, &misses, found),
+            Three::Parallel => pieper::parallel(&geometry, &aim, &misses, found),
         }
+        misses.to_array()
     }
 
-    /// The angles wrapped to the values closest to `near`, then clamped to the limits, each by as
-    /// little as full turns permit; and the largest displacement (rad).
-    pub(super) fn clamped(&self, angles: [f64; 6], near: &[f64; 6]) -> ([f64; 6], f64) {
-        let (mut q, mut most) = (angles, 0.0_f64);
+    /// The angles wrapped to the values closest to `near`, or to the limits where no full turn
+    /// takes them within; the same clamped to the limits; and the largest displacement (rad).
+    pub(super) fn wrapped(&self, angles: [f64; 6], near: &[f64; 6]) -> ([f64; 6], [f64; 6], f64) {
+        let (mut wrapped, mut q, mut most) = (angles, angles, 0.0_f64);
         for i in 0..6 {
             let (lower, upper) = (self.lower[i], self.upper[i]);
             let within = turned(angles[i], near[i], lower, upper);
-            let closest = within.unwrap_or_else(|| {
+            wrapped[i] = within.unwrap_or_else(|| {
                 angles[i] + TAU * ((0.5 * (lower + upper) - angles[i]) / TAU).round()
             });
-            q[i] = clamp(closest, lower, upper);
+            q[i] = clamp(wrapped[i], lower, upper);
             if within.is_none() {
-                most = most.max((q[i] - closest).abs());
+                most = most.max((q[i] - wrapped[i]).abs());
             }
         }
-        (q, most)
+        (wrapped, q, most)
     }
 
     /// A solution with all full turns that the limits permit, itself included; joints without

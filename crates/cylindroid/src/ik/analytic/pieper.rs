@@ -20,7 +20,7 @@
 //! Checked  tests/it/analytic/
 
 use super::geometry::ArmParameters;
-use super::subproblems::{Angle, EquationPair, across, coefficients, linear, onto};
+use super::subproblems::{Angle, EquationPair, Misses, across, coefficients, linear, onto};
 use crate::spatial::{Mat3, Vec3};
 
 /// A target pose, as rotation from zero and position, in the order in which the chain is read, and
@@ -33,7 +33,12 @@ pub(super) struct Target {
 }
 
 /// Calls `found` with the candidates; it returns whether one counts as a solution.
-pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[Angle; 6]) -> bool) {
+pub(super) fn meeting(
+    g: &ArmParameters,
+    aim: &Target,
+    misses: &Misses,
+    mut found: impl FnMut(&[Angle; 6]) -> bool,
+) {
     let ArmParameters { h, p: [p01, p12, p23, p34, _, _, p6t], reach, .. } = *g;
     let start = aim.start;
     let p = aim.position - p01 - aim.rotation * p6t;
@@ -51,14 +56,15 @@ pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[A
     };
     let (wrist, wrist_rest) = coefficients(h[3], h[4], h[5]);
     let (pointing, sideways) = (aim.rotation * h[5], aim.rotation * g.side);
-    pair.any(g.order, |first, third| {
+    pair.any(g.order, misses, |first, third| {
         let inner = p23 + third.of(h[2], p34);
         let outer = first.back(h[0], p) - p12;
         let (pointing, sideways) = (first.back(h[0], pointing), first.back(h[0], sideways));
         onto(h[1], inner, outer, reach, start[1]).any(|second| {
             let behind = |v| third.back(h[2], second.back(h[1], v));
             let (pointing, sideways) = (behind(pointing), behind(sideways));
-            linear(wrist, h[3].dot(pointing) - wrist_rest, 1.0, start[4]).any(|fifth| {
+            let fifths = linear(wrist, h[3].dot(pointing) - wrist_rest, 1.0, start[4]);
+            misses.of_third([first, third], fifths).any(|fifth| {
                 let from = fifth.of(h[4], h[5]);
                 onto(h[3], from, pointing, 1.0, start[3]).any(|fourth| {
                     let seen = fifth.back(h[4], fourth.back(h[3], sideways));
@@ -74,6 +80,7 @@ pub(super) fn meeting(g: &ArmParameters, aim: &Target, mut found: impl FnMut(&[A
 pub(super) fn parallel(
     g: &ArmParameters,
     aim: &Target,
+    misses: &Misses,
     mut found: impl FnMut(&[Angle; 6]) -> bool,
 ) {
     let ArmParameters { h, p: [p01, p12, p23, p34, p45, p56, p6t], reach, .. } = *g;
@@ -94,13 +101,14 @@ pub(super) fn parallel(
     // Both links are perpendicular to the parallel axes, to ALIGNED_AXES: the rest is its square.
     let (elbow, _) = coefficients(p23, n, p34);
     let links = p23.dot(p23) + p34.dot(p34);
-    pair.any(g.order, |first, fifth| {
+    pair.any(g.order, misses, |first, fifth| {
         let shoulder = first.back(h[0], p) - p12;
         let mut arm = |whole: Angle, sixth: Angle| {
             let wrist = shoulder - whole.of(n, p45 + fifth.of(h[4], p56));
             let wrist = wrist - n * n.dot(wrist);
             let d = 0.5 * (wrist.dot(wrist) - links);
-            linear(elbow, d, reach * reach, start[2]).any(|third| {
+            let thirds = linear(elbow, d, reach * reach, start[2]);
+            misses.of_third([first, fifth], thirds).any(|third| {
                 let inner = p23 + third.of(n, p34);
                 onto(n, inner, wrist, reach, start[1]).any(|second| {
                     let angle = whole.angle - second.angle - third.angle;

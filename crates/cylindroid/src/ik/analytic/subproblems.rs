@@ -15,6 +15,7 @@
 //! Source   Paden 1986; Elias & Wen 2025, IK-Geo, subproblems 1, 3, 4, 5, 6
 //! Checked  tests/it/analytic/, tests in this file
 
+use std::cell::Cell;
 use std::f64::consts::FRAC_PI_4;
 
 use crate::scalar::{Bracket, atan2, sin_cos};
@@ -33,15 +34,18 @@ pub(super) struct Angle {
     pub(super) angle: f64,
     /// True if the angle is undetermined.
     pub(super) free: bool,
+    /// True for the second of the two angles of a linear condition, as in conditions nearby.
+    pub(super) is_second: bool,
 }
 
 impl Angle {
-    pub(super) const NONE: Self = Self { cos: 1.0, sin: 0.0, angle: 0.0, free: false };
+    pub(super) const NONE: Self =
+        Self { cos: 1.0, sin: 0.0, angle: 0.0, free: false, is_second: false };
 
     /// A free angle.
     fn free(angle: f64) -> Self {
         let (sin, cos) = sin_cos(angle);
-        Self { cos, sin, angle, free: true }
+        Self { cos, sin, angle, free: true, is_second: false }
     }
 
     /// From (cos, sin) of any length.
@@ -54,7 +58,13 @@ impl Angle {
     #[inline]
     fn along_known(cos: f64, sin: f64, length: f64) -> Self {
         let one_over = 1.0 / length;
-        Self { cos: cos * one_over, sin: sin * one_over, angle: atan2(sin, cos), free: false }
+        Self {
+            cos: cos * one_over,
+            sin: sin * one_over,
+            angle: atan2(sin, cos),
+            free: false,
+            is_second: false,
+        }
     }
 
     /// `v` rotated about the unit vector `k`.
@@ -77,10 +87,12 @@ pub(super) struct Angles<const N: usize> {
     free: Option<f64>,
     list: [Angle; N],
     len: usize,
+    /// Of a linear condition without a solution c / sqrt(a^2 + b^2), beyond -1 or 1.
+    miss: f64,
 }
 
 impl<const N: usize> Angles<N> {
-    const NONE: Self = Self { free: None, list: [Angle::NONE; N], len: 0 };
+    const NONE: Self = Self { free: None, list: [Angle::NONE; N], len: 0, miss: 0.0 };
 
     fn push(&mut self, turn: Angle) {
         if self.len < N {
@@ -111,6 +123,37 @@ impl<const N: usize> Angles<N> {
     }
 }
 
+/// The linear conditions of a pose that have no solution: of each c / sqrt(a^2 + b^2), beyond -1 or
+/// 1, and 0 of those that have one or are not reached.
+#[derive(Debug, Default)]
+pub(super) struct Misses([Cell<f64>; 7]);
+
+impl Misses {
+    /// Notes the first condition.
+    fn of_first(&self, angles: Angles<2>) -> Angles<2> {
+        self.noted(0, angles)
+    }
+
+    /// Notes the second condition after an angle of the first.
+    fn of_second(&self, first: Angle, angles: Angles<2>) -> Angles<2> {
+        self.noted(1 + usize::from(first.is_second), angles)
+    }
+
+    /// Notes the third condition after a pair of angles of the first two.
+    pub(super) fn of_third(&self, [first, second]: [Angle; 2], angles: Angles<2>) -> Angles<2> {
+        self.noted(3 + 2 * usize::from(first.is_second) + usize::from(second.is_second), angles)
+    }
+
+    fn noted(&self, place: usize, angles: Angles<2>) -> Angles<2> {
+        self.0[place].set(angles.miss);
+        angles
+    }
+
+    pub(super) fn to_array(&self) -> [f64; 7] {
+        [0, 1, 2, 3, 4, 5, 6].map(|i: usize| self.0[i].get())
+    }
+}
+
 /// `a cos q + b sin q = c`, coefficients of magnitude `scale`.
 pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles<2> {
     let mut turns = Angles::NONE;
@@ -121,6 +164,7 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles
     }
     let height = square - c * c;
     if square == 0.0 || !(height >= -NEARLY_SATISFIED * square) {
+        turns.miss = c / square.sqrt();
         return turns;
     }
     if height <= 0.0 {
@@ -128,7 +172,10 @@ pub(super) fn linear([a, b]: [f64; 2], c: f64, scale: f64, start: f64) -> Angles
     } else {
         let h = height.sqrt();
         turns.push(Angle::along_known(a * c - b * h, b * c + a * h, square));
-        turns.push(Angle::along_known(a * c + b * h, b * c - a * h, square));
+        turns.push(Angle {
+            is_second: true,
+            ..Angle::along_known(a * c + b * h, b * c - a * h, square)
+        });
     }
     turns
 }
@@ -187,20 +234,31 @@ pub(super) struct EquationPair {
 
 impl EquationPair {
     /// Calls `f` for all pairs of angles, as [`Angles::any`].
-    pub(super) fn any(&self, order: Order, mut f: impl FnMut(Angle, Angle) -> bool) -> bool {
+    pub(super) fn any(
+        &self,
+        order: Order,
+        misses: &Misses,
+        mut f: impl FnMut(Angle, Angle) -> bool,
+    ) -> bool {
         let dot = |a: [f64; 2], t: Angle| a[0] * t.cos + a[1] * t.sin;
         let Self { x, y, d, scale, start } = *self;
         match order {
-            Order::FirstX(i) => linear(x[i], d[i], scale[i], start[0]).any(|first| {
-                let i = 1 - i;
-                let rest = d[i] - dot(x[i], first);
-                linear(y[i], rest, scale[i], start[1]).any(|second| f(first, second))
-            }),
-            Order::FirstY(i) => linear(y[i], d[i], scale[i], start[1]).any(|second| {
-                let i = 1 - i;
-                let rest = d[i] - dot(y[i], second);
-                linear(x[i], rest, scale[i], start[0]).any(|first| f(first, second))
-            }),
+            Order::FirstX(i) => {
+                misses.of_first(linear(x[i], d[i], scale[i], start[0])).any(|first| {
+                    let i = 1 - i;
+                    let rest = d[i] - dot(x[i], first);
+                    let seconds = linear(y[i], rest, scale[i], start[1]);
+                    misses.of_second(first, seconds).any(|second| f(first, second))
+                })
+            }
+            Order::FirstY(i) => {
+                misses.of_first(linear(y[i], d[i], scale[i], start[1])).any(|second| {
+                    let i = 1 - i;
+                    let rest = d[i] - dot(y[i], second);
+                    let firsts = linear(x[i], rest, scale[i], start[0]);
+                    misses.of_second(second, firsts).any(|first| f(first, second))
+                })
+            }
             Order::Together => {
                 let [[a, b], [c, e]] = y;
                 let determinant = a * e - b * c;
@@ -322,7 +380,7 @@ fn between(p: impl Fn(f64) -> f64, low: f64, high: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{EquationPair, Order, linear, real_roots};
+    use super::{EquationPair, Misses, Order, linear, real_roots};
 
     #[test]
     fn roots_are_found() {
@@ -405,7 +463,7 @@ mod tests {
             let dot = |v: [f64; 2], q: f64| v[0] * q.cos() + v[1] * q.sin();
             pair.d = [0, 1].map(|i: usize| dot(pair.x[i], a) + dot(pair.y[i], b));
             let mut near: f64 = 9.0;
-            pair.any(order, |first, second| {
+            pair.any(order, &Misses::default(), |first, second| {
                 near = near.min((first.angle - a).abs() + (second.angle - b).abs());
                 false
             });
