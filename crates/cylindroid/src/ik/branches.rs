@@ -119,13 +119,14 @@ impl Group {
 
     /// True if a condition misses its solutions at four neighbouring values, the less the closer to
     /// the middle, such that it may have one there: the lines on both sides meet below 1.
-    fn dips([before, left, right, after]: [&Self; 4]) -> bool {
+    fn dips(groups: &[Self]) -> bool {
+        let [before, left, right, after] = groups else { return false };
         (0..7).any(|i| {
-            let [far, near, other, beyond] =
-                [before, left, right, after].map(|g| g.misses[i].abs());
-            if [before, left, right, after].iter().any(|g| g.misses[i] == 0.0) {
+            let misses = [before, left, right, after].map(|group| group.misses[i].abs());
+            if misses.contains(&0.0) {
                 return false;
             }
+            let [far, near, other, beyond] = misses;
             let down = (near - far) / (left.value - before.value);
             let up = (beyond - other) / (after.value - right.value);
             let width = right.value - left.value;
@@ -160,9 +161,8 @@ impl Samples {
     pub(super) fn fold_between(&self, place: usize, least: f64) -> Option<(usize, f64)> {
         let groups = &self.groups;
         let is_fold = |i: usize| {
-            let around = |i: usize| [&groups[i - 1], &groups[i], &groups[i + 1], &groups[i + 2]];
-            let dips = i > 0 && i + 2 < groups.len() && Group::dips(around(i));
-            dips || groups[i].folds_before(&groups[i + 1])
+            let around = i.checked_sub(1).and_then(|before| groups.get(before..i + 3));
+            groups[i].folds_before(&groups[i + 1]) || around.is_some_and(Group::dips)
         };
         let width = |i: usize| groups[i + 1].value - groups[i].value;
         (place..groups.len().saturating_sub(1))

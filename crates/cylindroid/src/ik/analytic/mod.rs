@@ -233,8 +233,9 @@ impl Analytic {
 
     /// Calls `visit` with the candidates of the closed form for input that was checked, neither
     /// wrapped nor verified, each with the joints that the pose leaves free and its branch, whose
-    /// bits are the signs of roots by joint. `visit` returns whether the candidate counts as a solution. Returns by how much the conditions of the closed form
-    /// miss their solutions, beyond -1 or 1; 0 of those that have one or are not reached.
+    /// bits are the signs of roots by joint; `visit` answers whether the candidate counts as a
+    /// solution. Returns by how much the conditions of the closed form miss their solutions, beyond
+    /// -1 or 1; 0 of those that have one or are not reached.
     pub(super) fn candidates(
         &mut self,
         target: Pose,

@@ -240,24 +240,12 @@ impl EquationPair {
         misses: &Misses,
         mut f: impl FnMut(Angle, Angle) -> bool,
     ) -> bool {
-        let dot = |a: [f64; 2], t: Angle| a[0] * t.cos + a[1] * t.sin;
-        let Self { x, y, d, scale, start } = *self;
+        let Self { x, y, d, start, .. } = *self;
         match order {
-            Order::FirstX(i) => {
-                misses.of_first(linear(x[i], d[i], scale[i], start[0])).any(|first| {
-                    let i = 1 - i;
-                    let rest = d[i] - dot(x[i], first);
-                    let seconds = linear(y[i], rest, scale[i], start[1]);
-                    misses.of_second(first, seconds).any(|second| f(first, second))
-                })
-            }
+            Order::FirstX(i) => self.one_by_one(i, [x, y], start, misses, f),
             Order::FirstY(i) => {
-                misses.of_first(linear(y[i], d[i], scale[i], start[1])).any(|second| {
-                    let i = 1 - i;
-                    let rest = d[i] - dot(y[i], second);
-                    let firsts = linear(x[i], rest, scale[i], start[0]);
-                    misses.of_second(second, firsts).any(|first| f(first, second))
-                })
+                let start = [start[1], start[0]];
+                self.one_by_one(i, [y, x], start, misses, |second, first| f(first, second))
             }
             Order::Together => {
                 let [[a, b], [c, e]] = y;
@@ -273,6 +261,24 @@ impl EquationPair {
                 })
             }
         }
+    }
+
+    /// The angle of `a` from row i, which contains no other, then that of `b` from the other row.
+    fn one_by_one(
+        &self,
+        i: usize,
+        [a, b]: [[[f64; 2]; 2]; 2],
+        start: [f64; 2],
+        misses: &Misses,
+        mut f: impl FnMut(Angle, Angle) -> bool,
+    ) -> bool {
+        let Self { d, scale, .. } = self;
+        misses.of_first(linear(a[i], d[i], scale[i], start[0])).any(|first| {
+            let i = 1 - i;
+            let rest = d[i] - (a[i][0] * first.cos + a[i][1] * first.sin);
+            let seconds = linear(b[i], rest, scale[i], start[1]);
+            misses.of_second(first, seconds).any(|second| f(first, second))
+        })
     }
 }
 
