@@ -5,9 +5,12 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::print_stdout)]
 
 use std::f64::consts::PI;
+use std::hint::black_box;
 use std::time::Instant;
 
 use cylindroid::ik::{Budget, Goal, IkOptions, Solver};
+use cylindroid::kinematics::{Chain, ReferenceFrame};
+use cylindroid::linalg::Matrix;
 use cylindroid::model::Coordinate;
 use cylindroid::{EndEffector, Mechanism, Vec3, catalogue};
 
@@ -26,6 +29,7 @@ fn main() {
     for robot in &robots {
         assert!(ARMS.contains(&robot.as_str()), "{robot}: none of {ARMS:?}");
     }
+    println!("A pose with its Jacobian, panda: {:.0} ns (median).\n", pose_and_jacobian());
     println!("| robot | targets | solved | median [us] | 99 % [us] | most [us] |");
     println!("|---|---|---:|---:|---:|---:|");
     for name in ARMS.into_iter().filter(|name| is_chosen(name)) {
@@ -46,6 +50,28 @@ fn main() {
         let frame = robot.frame(frame).unwrap();
         rows(robot.name(), &robot, frame.into());
     }
+}
+
+/// Median time of what the table of peers begins with, which tells how fast the machine is (ns).
+fn pose_and_jacobian() -> f64 {
+    const CALLS: u32 = 1000;
+    let robot = catalogue::load("panda").unwrap();
+    let mut chain = Chain::new(&robot, robot.tool()).unwrap();
+    let mut jacobian = Matrix::zeros(6, chain.n());
+    let q = robot.home();
+    let mut times: Vec<f64> = (0..TARGETS)
+        .map(|_| {
+            let begin = Instant::now();
+            for _ in 0..CALLS {
+                black_box(chain.set(black_box(q)));
+                chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut jacobian);
+                black_box(&jacobian);
+            }
+            begin.elapsed().as_secs_f64() * 1e9 / f64::from(CALLS)
+        })
+        .collect();
+    times.sort_by(f64::total_cmp);
+    times[TARGETS / 2]
 }
 
 /// The distance of the nearest solution against that of the best of many random starts, each

@@ -31,6 +31,11 @@ const NEARLY_WITHIN: f64 = 0.3;
 const MARGIN: f64 = 0.3;
 /// The same for segments between ends of branches [rad].
 const SEGMENT_MARGIN: f64 = 0.1;
+/// A branch is nearly straight about a sample where the chord over it is longer than this share of
+/// those on both sides [-]: it turns by less than 36 degrees there.
+const STRAIGHT: f64 = 0.95;
+/// It leaves a chord by less than this share of its length [-].
+const SAGITTA: f64 = 0.1;
 /// Into so many parts a swing is divided.
 const SWING_POINTS: i32 = 16;
 
@@ -284,6 +289,9 @@ fn swing(
 
 /// A lower bound of the distances on the branch between the neighbours of a sample; `None` if a
 /// neighbour is closer.
+///
+/// Where the branch is nearly straight there it leaves its chords by little, and a chord between two
+/// points at least d away is nowhere closer than the root of `d^2 - (half of it)^2`.
 fn lower_bound(sample: &Sample, sides: [Option<&Sample>; 2]) -> Option<f64> {
     let mut longest = 0.0_f64;
     for side in sides {
@@ -299,6 +307,13 @@ fn lower_bound(sample: &Sample, sides: [Option<&Sample>; 2]) -> Option<f64> {
             return None;
         }
         longest = longest.max(other.distance(sample));
+    }
+    if let [Some(a), Some(b)] = sides
+        && [a, sample, b].iter().all(|s| s.excluded == 0.0)
+        && a.distance(b) > STRAIGHT * (a.distance(sample) + sample.distance(b))
+    {
+        let squared = sample.far - 0.25 * longest * longest;
+        return Some(squared.max(0.0).sqrt() - SAGITTA * longest);
     }
     Some(sample.far.sqrt() - longest - MARGIN)
 }

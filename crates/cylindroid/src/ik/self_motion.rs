@@ -36,6 +36,8 @@ const FLAT: f64 = 1e-9;
 const BOUNDARY: f64 = 10.0;
 /// Levenberg-Marquardt steps per step along the self-motion.
 const CORRECTIONS: usize = 8;
+/// A descent this close to a known minimum leads there [rad, or lengths].
+const NEAR: f64 = 0.05;
 
 /// What a descent makes smaller.
 #[derive(Debug)]
@@ -79,6 +81,8 @@ pub(super) struct Descent {
     desired: Vec<f64>,
     /// Half-spaces that the projection keeps.
     bounding: Vec<bool>,
+    /// Minima of the distance that descents found, if they are collected.
+    minima: Option<Vec<Vec<f64>>>,
 }
 
 impl Descent {
@@ -92,7 +96,24 @@ impl Descent {
             free_part: vec![0.0; n],
             desired: vec![0.0; n],
             bounding: Vec::new(),
+            minima: None,
         }
+    }
+
+    /// From here on descents end where they come near the minimum of another one.
+    pub(super) fn collect_minima(&mut self) {
+        self.minima.get_or_insert_default().clear();
+    }
+
+    /// Descents run to their own ends again.
+    pub(super) fn end_collection(&mut self) {
+        self.minima = None;
+    }
+
+    /// True if a known minimum is near.
+    fn leads_to_minimum(&self, problem: &Problem, q: &[f64]) -> bool {
+        let minima = self.minima.as_deref().unwrap_or_default();
+        minima.iter().any(|known| problem.squared_distance(q, known) < NEAR * NEAR)
     }
 
     /// Moves the solution `q` along the solutions to a minimum of the cost; gives up as soon as a
@@ -108,6 +129,9 @@ impl Descent {
         let mut share = FIRST_SHARE;
         problem.evaluate(q);
         for step in 0..STEPS {
+            if self.leads_to_minimum(problem, q) {
+                return;
+            }
             aim.descent_into(problem, q, &mut self.desired);
             if !self.project(problem, q, options) {
                 return;
@@ -115,6 +139,9 @@ impl Descent {
             let slope = dot(&problem.d, &problem.d);
             let scale = if matches!(aim, Aim::Closest(_)) { far } else { 1.0 };
             if slope <= FLAT * scale {
+                if let Some(minima) = &mut self.minima {
+                    minima.push(q.to_vec());
+                }
                 return;
             }
             if step > 0 {

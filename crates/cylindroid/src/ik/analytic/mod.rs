@@ -286,9 +286,7 @@ impl Analytic {
         for i in 0..6 {
             let (lower, upper) = (self.lower[i], self.upper[i]);
             let within = turned(angles[i], near[i], lower, upper);
-            wrapped[i] = within.unwrap_or_else(|| {
-                angles[i] + TAU * ((0.5 * (lower + upper) - angles[i]) / TAU).round()
-            });
+            wrapped[i] = within.unwrap_or_else(|| nearest_turn(angles[i], 0.5 * (lower + upper)));
             q[i] = clamp(wrapped[i], lower, upper);
             if within.is_none() {
                 most = most.max((q[i] - wrapped[i]).abs());
@@ -424,11 +422,16 @@ impl Analytic {
     }
 }
 
+/// The angle wrapped by full turns to the value closest to `near`.
+fn nearest_turn(angle: f64, near: f64) -> f64 {
+    let apart = near - angle;
+    if apart.abs() <= PI { angle } else { angle + TAU * (apart / TAU).round() }
+}
+
 /// The angle wrapped by full turns to the value closest to `near` within the limits; clamped if it
 /// exceeds a limit by rounding. `None` outside.
 fn turned(angle: f64, near: f64, lower: f64, upper: f64) -> Option<f64> {
-    let apart = near - angle;
-    let mut q = if apart.abs() <= PI { angle } else { angle + TAU * (apart / TAU).round() };
+    let mut q = nearest_turn(angle, near);
     if q > upper {
         q -= TAU * ((q - upper - ANALYTIC_AT_LIMIT) / TAU).ceil();
     } else if q < lower {
