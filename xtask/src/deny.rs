@@ -3,10 +3,10 @@
 
 use std::process::Command;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
 use crate::python;
-use crate::shell::run;
+use crate::shell::{captured, cargo, run};
 use crate::tools::tool;
 
 const VERSION: &str = "0.20.2";
@@ -14,13 +14,17 @@ const VERSION: &str = "0.20.2";
 /// The packages of the viewer and of the book.
 const LOCK_FILES: [&str; 2] = ["viewer/package-lock.json", "xtask/book/package-lock.json"];
 
-/// Checks the dependencies of all crates, and the licences of npm and Python packages.
+/// Checks the dependencies of all crates, the lock file of the fuzzing targets, and the licences of npm and Python packages.
 ///
 /// # Errors
 /// A licence that is not allowed, a duplicate without a reason, a source that is not crates.io; no
 /// way to crates.io or PyPI for the first installation.
 pub(crate) fn check() -> Result<()> {
     with(&["bans", "licenses", "sources"])?;
+    // The fuzzing targets are a workspace of their own: without this nothing would read their lock file.
+    let locked = ["metadata", "--locked", "--format-version", "1", "--manifest-path"];
+    captured(cargo(&locked).arg("fuzz/Cargo.toml"))
+        .context("fuzz/Cargo.lock is out of date: `cargo metadata` in that folder renews it")?;
     run(Command::new(python::for_tests()?).arg("xtask/licences.py").args(LOCK_FILES))
 }
 
