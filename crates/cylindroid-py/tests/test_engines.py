@@ -83,8 +83,12 @@ def test_a_uri_has_the_same_bytes(whole, tmp_path):
     assert again.computed == ROWS - 65_536
     assert checksums(own) == whole
     (own / "manifest.json").unlink()
-    with pytest.raises(cy.InvalidOptionError, match="no manifest"):
+    with pytest.raises(cy.InvalidOptionError, match="no manifest") as refused:
         cy.sweep(**SWEEP, out=uri)
+    assert refused.value.option == "out" and refused.value.reason.startswith(uri)
+    with pytest.raises(cy.InvalidOptionError, match="whole number") as refused:
+        cy.sweep(**SWEEP, out=uri, threads=0)
+    assert refused.value.option == "threads"
     (own / "manifest.json").write_text("half a fi")
     with pytest.raises(cy.UnreadableFileError, match="no manifest of a sweep"):
         cy.sweep(**SWEEP, out=uri, resume=True)

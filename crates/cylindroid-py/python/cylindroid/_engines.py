@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from ._core import SweepPlan
-from ._errors import CylindroidError, InvalidOptionError, UnreadableFileError, refused
+from ._errors import CylindroidError, UnreadableFileError, refused
 
 #: Parts of each worker that are handed out at a time: it never waits for the driver.
 AHEAD = 4
@@ -46,14 +46,14 @@ class _Uri:
         try:
             fs: Any = importlib.import_module("pyarrow.fs")
         except ImportError as error:
-            raise InvalidOptionError(
-                f"out: '{uri}' needs pyarrow: pip install pyarrow, or this package with [ray]"
+            raise refused(
+                "out", f"'{uri}' needs pyarrow: pip install pyarrow, or this package with [ray]"
             ) from error
         self.uri = uri
         try:
             self.system, self.path = fs.FileSystem.from_uri(uri)
         except Exception as error:
-            raise InvalidOptionError(f"out: pyarrow does not open '{uri}': {error}") from error
+            raise refused("out", f"pyarrow does not open '{uri}': {error}") from error
         self.missing = fs.FileType.NotFound
 
     def create(self) -> None:
@@ -138,10 +138,11 @@ class _Work:
             plan = SweepPlan(**pickle.loads(self.packed.data))
             difference = plan.difference(self.recipe)
             if difference is not None:
-                raise InvalidOptionError(
-                    "engine: a worker has another sweep than the driver: "
-                    f"{difference}; install the same version and model files, and use processors of "
-                    "one arithmetic, or set CYLINDROID_SIMD alike"
+                raise refused(
+                    "engine",
+                    f"a worker has another sweep than the driver: {difference}; install the same "
+                    "version and model files, and use processors of one arithmetic, or set "
+                    "CYLINDROID_SIMD alike",
                 )
             _PLANS.clear()
             _PLANS[self.key] = plan
@@ -242,7 +243,7 @@ def opened(engine: Any, threads: Any) -> Iterator[_Executor | _Ray]:
     """The workers of an engine; threads of this process for none."""
     if engine is None:
         if threads is not None and (not isinstance(threads, int) or threads < 1):
-            raise InvalidOptionError("threads: a whole number is needed, one at least")
+            raise refused("threads", "a whole number is needed, one at least")
         with concurrent.futures.ThreadPoolExecutor(threads or os.cpu_count()) as executor:
             yield _Executor(executor)
     elif isinstance(engine, concurrent.futures.Executor):
@@ -339,8 +340,8 @@ def _folder(plan: SweepPlan, out: Any, resume: bool) -> Iterator[Any]:
         text = storage.read(MANIFEST).decode(errors="replace")
         listed = plan.listed_parts(out, text, resume)
     elif storage.exists(plan.part_name(0)) and not resume:
-        raise InvalidOptionError(
-            f"out: {out}: it has parts of a sweep, but no manifest; name another folder"
+        raise refused(
+            "out", f"{out}: it has parts of a sweep, but no manifest; name another folder"
         )
 
     def write_manifest(parts: list[Listed | None]) -> None:
