@@ -1,13 +1,14 @@
 //! The closest solution: along the self-motion of every solution, and for arms with one redundant
 //! joint over all branches of its closed form.
 //!
-//! Method   restarts from the preferred configuration and beside it; then the locked joint of the closed
-//!          form is sampled outwards from its preferred value, until its own displacement exceeds the
-//!          distance of the best solution, and more finely where branches begin or end. Solutions that
-//!          are closer than their neighbours on the same branch, and points of swings and between
-//!          ends of branches (`branches.rs`), are corrected by a few Newton steps and are the start of
-//!          a descent along the self-motion, in the order of their distance, as long as it can come
-//!          closer than the best: the distance changes by no more than the configuration.
+//! Method   restarts from the preferred configuration and beside it; then the locked joint of the
+//!          closed form is sampled outwards from its preferred value, until its own displacement
+//!          exceeds the distance of the best solution, and more finely where branches begin or end.
+//!          Solutions that are closer than their neighbours on the same branch, and points of swings
+//!          and between ends of branches (`branches.rs`), are corrected by a few Newton steps and are
+//!          the start of a descent along the self-motion, in the order of their distance, as long as it
+//!          can come closer than the best (the distance changes by no more than the configuration) and
+//!          until it comes near the end of another one
 //! Valid    up to the tolerances of solutions, which next to a singularity let joints move by 1e-3;
 //!          a branch that begins and ends between two samples, on the same side of the condition
 //!          that it violates there, is found where the samples around foretell it
@@ -92,7 +93,9 @@ impl Solver {
     ) -> Result<usize> {
         let Some(target) = target_of(goals) else { return Ok(0) };
         let Some(mut formulas) = self.formulas.take() else { return Ok(0) };
+        self.descent.collect_minima();
         let calls = self.sample_self_motion(&mut formulas, (target, most), solutions);
+        self.descent.end_collection();
         self.formulas = Some(formulas);
         calls
     }
@@ -135,7 +138,6 @@ impl Solver {
             true => self.few_restarts(&q),
             false => Vec::new(),
         };
-        self.descent.collect_minima();
         if let Some(q) = restarts.first_mut() {
             closest = self.descend(q, (closest, FoundBy::Numerical), solutions)?;
         }
@@ -220,7 +222,6 @@ impl Solver {
             closest = self.descend(q, (closest, FoundBy::Numerical), solutions)?;
         }
         self.descend_from(&found, (locked, places), closest, solutions)?;
-        self.descent.end_collection();
         Ok(calls)
     }
 
