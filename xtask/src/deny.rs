@@ -14,7 +14,8 @@ const VERSION: &str = "0.20.2";
 /// The packages of the viewer and of the book.
 const LOCK_FILES: [&str; 2] = ["viewer/package-lock.json", "xtask/book/package-lock.json"];
 
-/// Checks the dependencies of all crates, the lock file of the fuzzing targets, and the licences of npm and Python packages.
+/// Checks the dependencies of all crates, the lock file of the fuzzing targets, and the licences of
+/// npm and Python packages.
 ///
 /// # Errors
 /// A licence that is not allowed, a duplicate without a reason, a source that is not crates.io; no

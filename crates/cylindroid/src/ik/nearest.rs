@@ -22,7 +22,7 @@ use super::branches::{Place, STEP, Sample, Samples, index_of};
 use super::closed_form::ClosedForm;
 use super::convergence::is_reached;
 use super::goal::{Goal, target_of};
-use super::parallel_restarts::{BatchedProblem, LANES, MAX_COORDINATES, Restart, solve_batched};
+use super::parallel_restarts::{LANES, MAX_COORDINATES, Restart};
 use super::self_motion::Aim;
 use super::solution::{Candidate, FoundBy};
 use super::solve::Solver;
@@ -270,24 +270,23 @@ impl Solver {
     /// Moves configurations, at most [`LANES`], towards the goals by at most so many steps, in a batch
     /// if the goals permit it.
     fn correct(&mut self, starts: &mut [Vec<f64>], most: usize) {
-        if let Some(batched) = self.problem.batched(&self.options) {
-            // Lanes that remain repeat the last one.
-            let mut restarts: [Restart; LANES] = std::array::from_fn(|i| {
-                let start = &starts[i.min(starts.len() - 1)];
-                let mut q = [0.0; MAX_COORDINATES];
-                q.iter_mut().zip(&self.problem.coordinates).for_each(|(x, &c)| *x = start[c]);
-                Restart::at(q)
-            });
-            let batched = BatchedProblem { max_steps: most, until_all_end: true, ..batched };
-            solve_batched(&batched, &mut restarts);
-            for (start, restart) in starts.iter_mut().zip(restarts) {
-                for (x, &c) in restart.q.iter().zip(&self.problem.coordinates) {
-                    start[c] = *x;
-                }
-            }
-        } else {
+        if self.problem.batched(&self.options).is_none() {
             for start in starts {
                 self.problem.run(start, &self.options, most);
+            }
+            return;
+        }
+        // Lanes that remain repeat the last one.
+        let mut restarts: [Restart; LANES] = std::array::from_fn(|i| {
+            let start = &starts[i.min(starts.len() - 1)];
+            let mut q = [0.0; MAX_COORDINATES];
+            q.iter_mut().zip(&self.problem.coordinates).for_each(|(x, &c)| *x = start[c]);
+            Restart::at(q)
+        });
+        self.solve_batched(&mut restarts, most, true);
+        for (start, restart) in starts.iter_mut().zip(restarts) {
+            for (x, &c) in restart.q.iter().zip(&self.problem.coordinates) {
+                start[c] = *x;
             }
         }
     }

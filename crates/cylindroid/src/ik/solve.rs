@@ -467,7 +467,12 @@ impl Solver {
     }
 
     /// Restarts in a batch, until one converges or all have ended; returns their iterations.
-    fn solve_batched(&self, restarts: &mut [Restart; LANES], most: usize, all: bool) -> usize {
+    pub(super) fn solve_batched(
+        &self,
+        restarts: &mut [Restart; LANES],
+        most: usize,
+        all: bool,
+    ) -> usize {
         if let Some(batched) = self.problem.batched(&self.options) {
             solve_batched(
                 &BatchedProblem { max_steps: most, until_all_end: all, ..batched },

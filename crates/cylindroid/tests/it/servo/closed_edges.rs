@@ -234,7 +234,7 @@ fn table_of_closed_chains_at_the_edge() {
         let [back, silent, slow, needless] = counts;
         println!(
             "{name} {push:?}, {dt} s: of {motions} motions {back} move back by more than 1e-3, {silent} name \
-             no stall, {slow} take longer, {needless} than drives need too"
+             no stall, {slow} take longer, {needless} of them also than drives need"
         );
     }
 }
