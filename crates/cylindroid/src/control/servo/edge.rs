@@ -15,7 +15,7 @@
 
 use super::approach;
 use super::task_space::TaskSpace;
-use crate::control::solver::saturation::Curvature;
+use crate::control::solver::saturation::{Curvature, KnownWay};
 use crate::kinematics::{Chain, ReferenceFrame};
 use crate::linalg::{Matrix, dot};
 use crate::model::Limits;
@@ -32,6 +32,8 @@ pub(super) struct Edge<'a> {
     pub(super) hessian: &'a mut [Matrix],
     /// The way to the nearest pose (scaled), where it is known.
     pub(super) way: Option<&'a [f64]>,
+    /// The same, where it is to be taken straight.
+    pub(super) straight: Option<KnownWay<'a>>,
 }
 
 /// C at the configuration of the chain, for what is `left` of the scaled error; `hessian` is memory.
@@ -91,6 +93,10 @@ fn add_turn(space: &TaskSpace, jacobian: &Matrix, left: &[f64], out: &mut Matrix
 impl Curvature for Edge<'_> {
     fn load(&mut self, left: &[f64], out: &mut Matrix) {
         curvature_into((self.chain, self.space), self.hessian, left, out);
+    }
+
+    fn known_way(&self) -> Option<KnownWay<'_>> {
+        self.straight
     }
 
     fn share(&mut self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {

@@ -18,7 +18,7 @@ use super::nearest_pose::{ARRIVED, HALVINGS, LONGEST, SHORT, STEPS};
 use super::task_space::TaskSpace;
 use crate::control::solver::active_set::{ActiveSet, Level, Precision};
 use crate::control::solver::inequalities::Inequalities;
-use crate::control::solver::saturation::{Curvature, NewtonStep};
+use crate::control::solver::saturation::{Curvature, KnownWay, NewtonStep};
 use crate::error::Result;
 use crate::kinematics::Chain;
 use crate::linalg::{Matrix, dot};
@@ -356,6 +356,8 @@ fn load(
 pub(super) struct LoopCurvature<'a> {
     pub(super) edge: &'a mut LoopEdge,
     pub(super) around: LoopSurroundings<'a>,
+    /// Of a motion that goes straight to the nearest pose.
+    pub(super) gain_of_way: Option<f64>,
 }
 
 impl Curvature for LoopCurvature<'_> {
@@ -364,6 +366,12 @@ impl Curvature for LoopCurvature<'_> {
             Ok(()) => curvature(&self.edge.slopes, left, out),
             Err(_) => out.as_mut_slice().fill(0.0),
         }
+    }
+
+    fn known_way(&self) -> Option<KnownWay<'_>> {
+        let LoopEdge { has_way, way_of_motions: way, far, .. } = &*self.edge;
+        let known = self.gain_of_way.map(|gain| KnownWay { way, far: *far, gain });
+        known.filter(|_| *has_way)
     }
 
     fn share(&mut self, way: &[f64], motions: &[f64], gradient: &[f64]) -> f64 {

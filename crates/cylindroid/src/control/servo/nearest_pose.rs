@@ -32,6 +32,11 @@ pub(super) const ARRIVED: f64 = 0.02;
 /// A step below this has arrived as well [rad, or characteristic lengths].
 pub(super) const SHORT: f64 = 1e-6;
 
+/// Times the usual gain with which joints approach a nearest pose that is known [-]: at the usual one they
+/// reach limits up to 0.8 s later than those of a linearised task, which are stopped there. Found by
+/// experiment.
+const FASTER: f64 = 2.0;
+
 /// A pose towards which a motion ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EdgeAim {
@@ -40,6 +45,15 @@ pub(super) struct EdgeAim {
     pub(super) gain: f64,
     /// True where no configuration reaches it.
     pub(super) is_out_of_reach: bool,
+    /// True for a pose ahead of a twist, at which no motion ends.
+    pub(super) is_ahead: bool,
+}
+
+impl EdgeAim {
+    /// The gain on the way to the nearest pose; `None` for a pose ahead of a twist, at which no motion ends.
+    pub(super) fn gain_of_way(&self, dt: f64) -> Option<f64> {
+        (!self.is_ahead).then(|| (FASTER * self.gain).min(1.0 / dt))
+    }
 }
 
 /// The task, its limits, and memory of the servo.
@@ -152,6 +166,7 @@ impl NearestPose {
             dt: 0.0,
             hessian: around.hessian,
             way: None,
+            straight: None,
         };
         edge.load(&self.error, &mut self.newton.curvature);
         // A joint at a limit that would reduce the error beyond it rests.

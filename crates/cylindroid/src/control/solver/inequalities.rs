@@ -89,6 +89,25 @@ impl Inequalities {
         }
     }
 
+    /// The largest share of y in [0, 1] that is within all bounds; `None` if none is.
+    pub(in crate::control) fn share_within(&self, y: &[f64]) -> Option<f64> {
+        let (mut least, mut most) = (0.0_f64, 1.0_f64);
+        for i in 0..self.len() {
+            let value = self.value(i, y);
+            let (lower, upper) = (self.lower[i], self.upper[i]);
+            if value == 0.0 {
+                if self.excess(i, value).0 > 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let (enter, leave) = if value > 0.0 { (lower, upper) } else { (upper, lower) };
+            least = least.max(enter / value);
+            most = most.min(leave / value);
+        }
+        (least <= most).then_some(most)
+    }
+
     /// True if the row permits one value only.
     pub(super) fn is_equality(&self, i: usize) -> bool {
         self.lower[i] == self.upper[i]
@@ -109,5 +128,25 @@ impl Inequalities {
     /// The bound of row `i` on the side of `sign`.
     pub(super) fn bound(&self, i: usize, sign: f64) -> f64 {
         if sign > 0.0 { self.upper[i] } else { self.lower[i] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_within_is_the_largest() {
+        let mut set = Inequalities::new(2, true, 0);
+        (set.lower, set.upper) = (vec![-1.0, -2.0], vec![1.0, 2.0]);
+        assert_eq!(set.share_within(&[2.0, 1.0]), Some(0.5));
+        assert_eq!(set.share_within(&[-0.5, 1.0]), Some(1.0));
+        assert_eq!(set.share_within(&[0.0, 8.0]), Some(0.25));
+        // A velocity that cannot end at once.
+        set.lower[0] = 0.5;
+        assert_eq!(set.share_within(&[2.0, 1.0]), Some(0.5));
+        assert_eq!(set.share_within(&[0.0, 1.0]), None);
+        assert_eq!(set.share_within(&[-1.0, 1.0]), None);
+        assert_eq!(set.share_within(&[0.9, 9.0]), None);
     }
 }

@@ -19,7 +19,7 @@
 //!          src/control/solver/saturation/tests.rs
 
 use curved::Curved;
-pub(in crate::control) use curved::{Curvature, Path};
+pub(in crate::control) use curved::{Curvature, KnownWay, Path};
 pub(in crate::control) use newton_step::NewtonStep;
 pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem};
 

@@ -1,5 +1,5 @@
-//! Closed chains pushed beyond their workspace, and arms pushed outwards by twists: with any acceleration
-//! limits they come to rest there once, and say why.
+//! Closed chains and arms pushed beyond their workspace: with any acceleration limits they come to rest
+//! there once, and say why.
 
 use cylindroid::closure::assemble;
 use cylindroid::control::TwistStatus;
@@ -166,6 +166,38 @@ fn closed_chains_come_to_rest_at_the_edge_of_their_workspace() {
             println!("{case}");
             assert!(motion.stall.is_some() && motion.time < 20.0, "{case}");
             assert!(motion.turns <= 4 && motion.back < 1e-3, "{case}");
+        }
+    }
+}
+
+/// Their self-motions do not swing on the way, which held it up for 13 to 22 s.
+#[test]
+fn two_arms_take_the_way_to_the_nearest_pose_straight() {
+    let robot = weakened("two-arm", 0.5);
+    for direction in directions(&robot) {
+        let motion = to_the_edge((&robot, robot.home()), Push::Target, direction, 1e-2, 30.0);
+        println!("{direction:?}: {motion:?}");
+        assert!(motion.stall.is_some() && motion.time < 12.0, "{direction:?}: {motion:?}");
+        assert!(motion.turns == 0 && motion.back < 1e-3, "{direction:?}: {motion:?}");
+    }
+}
+
+/// A position alone leaves self-motions: with them a panda took up to 23 s, and an iiwa14 never came to rest.
+#[test]
+fn arms_take_the_way_to_the_nearest_position_straight() {
+    for (name, seconds) in [("ur5e", 10.0), ("iiwa14", 15.0), ("panda", 8.0), ("puma560", 7.0)] {
+        for acceleration in [0.5, 5.0, f64::INFINITY] {
+            let robot = weakened(name, acceleration);
+            for direction in directions(&robot) {
+                let start = (&robot, robot.home());
+                let motion = to_the_edge(start, Push::Target, direction, 1e-2, 30.0);
+                let case = format!("{name} {direction:?} at {acceleration}: {motion:?}");
+                println!("{case}");
+                assert!(motion.stall.is_some() && motion.time < seconds, "{case}");
+                // Downwards a panda slides along its limits.
+                let back = if name == "panda" && direction == -Vec3::Z { 3e-3 } else { 1e-3 };
+                assert!(motion.back < back && motion.turns <= 2, "{case}");
+            }
         }
     }
 }

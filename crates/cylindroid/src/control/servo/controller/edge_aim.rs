@@ -75,11 +75,16 @@ impl Servo {
             let error = self.options.task.seen(pose, pose.error_to(ahead.pose));
             self.space.scale(error, &mut self.edge_error);
             self.step_projection.apply(&mut self.edge_error);
-            self.edge_aim =
-                Some(EdgeAim { pose: ahead.pose, gain: 1.0 / time, is_out_of_reach: false });
+            self.edge_aim = Some(EdgeAim {
+                pose: ahead.pose,
+                gain: 1.0 / time,
+                is_out_of_reach: false,
+                is_ahead: true,
+            });
         } else if is_out_of_reach || is_coupled {
             self.edge_error.copy_from_slice(&self.projected_error);
-            self.edge_aim = Some(EdgeAim { pose: target.pose, gain, is_out_of_reach });
+            self.edge_aim =
+                Some(EdgeAim { pose: target.pose, gain, is_out_of_reach, is_ahead: false });
         }
     }
 

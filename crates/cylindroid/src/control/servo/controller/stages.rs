@@ -14,7 +14,9 @@ use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::VelocityBounds;
-use crate::control::solver::saturation::{Curvature, Path, Problem, Saturation, brake, solve};
+use crate::control::solver::saturation::{
+    Curvature, KnownWay, Path, Problem, Saturation, brake, solve,
+};
 use crate::error::Result;
 use crate::linalg::RowSpace;
 use crate::spatial::{Pose, Twist};
@@ -147,15 +149,20 @@ impl Servo {
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
         let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };
+        let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
         let Some(coupled) = &mut self.coupled else {
-            let way = self.nearest_pose.as_ref().and_then(|nearest| nearest.known_way());
+            let nearest = self.nearest_pose.as_ref().filter(|_| ends_at_the_edge);
+            let way = nearest.and_then(|nearest| nearest.known_way());
+            let far = nearest.map_or(0.0, |nearest| nearest.left().powi(2));
+            let straight = way.zip(gain_of_way).map(|(way, gain)| KnownWay { way, far, gain });
             let mut edge = Edge {
                 chain: &self.chain,
                 space: &self.space,
                 limits: &self.limits,
                 dt: self.options.dt,
                 hessian: &mut self.hessian,
-                way: way.filter(|_| ends_at_the_edge),
+                way,
+                straight,
             };
             let (secondary, rates) = (&self.secondary, &mut self.primary);
             return Ok(self.saturator.apply(problem, secondary, Some((&mut edge, path)), rates));
@@ -164,7 +171,7 @@ impl Servo {
         let around =
             LoopSurroundings { task: self.options.task, limits: &self.limits, dt: self.options.dt };
         let mut edge = match &mut self.loop_edge {
-            Some(edge) if ends_at_the_edge => Some(LoopCurvature { edge, around }),
+            Some(edge) if ends_at_the_edge => Some(LoopCurvature { edge, around, gain_of_way }),
             _ => None,
         };
         let curvature = edge.as_mut().map(|edge| (edge as &mut dyn Curvature, path));
