@@ -154,6 +154,8 @@ impl Servo {
             let nearest = self.nearest_pose.as_ref().filter(|_| ends_at_the_edge);
             let way = nearest.and_then(|nearest| nearest.known_way());
             let far = nearest.map_or(0.0, |nearest| nearest.left().powi(2));
+            // Arms without self-motions do not swing, and come back to targets less often from this way.
+            let gain_of_way = gain_of_way.filter(|_| self.task.rows() < self.task.cols());
             let straight = way.zip(gain_of_way).map(|(way, gain)| KnownWay { way, far, gain });
             let mut edge = Edge {
                 chain: &self.chain,

@@ -7,7 +7,7 @@
 //! Straight where the way w to the nearest pose, with the error e*, is known: y = s k (w + t J^T e), k its
 //!          gain, t >= 0 the least with which |e|^2 / 2 falls at first by f, its fall on the whole way: a
 //!          path along which it is convex does so. Not where w climbs by more than `WINDING` f: the way
-//!          winds
+//!          winds; of trees only those with self-motions, m < n
 //! Shapes   J: m x n, C: n x n, w: n
 //! Valid    e_l is at most as large as the error
 //! Why so   |J y - x|^2 alone ends with full speed at the edge of reach, and a scalar damping that
