@@ -33,8 +33,7 @@ pub(super) const ARRIVED: f64 = 0.02;
 pub(super) const SHORT: f64 = 1e-6;
 
 /// Times the usual gain with which joints approach a nearest pose that is known [-]: at the usual one they
-/// reach limits up to 0.8 s later than those of a linearised task, which are stopped there. Found by
-/// experiment.
+/// reach limits later than those of a linearised task, which are stopped there. Found by experiment.
 const FASTER: f64 = 2.0;
 
 /// A pose towards which a motion ends.
