@@ -30,10 +30,10 @@ pub(super) struct Edge<'a> {
     pub(super) dt: f64,
     /// Memory for the derivatives of the Jacobian, 6 x n for each coordinate.
     pub(super) hessian: &'a mut [Matrix],
-    /// The way to the nearest pose (scaled), where it is known.
-    pub(super) way: Option<&'a [f64]>,
-    /// The same, where it is to be taken straight.
-    pub(super) straight: Option<KnownWay<'a>>,
+    /// The way to the nearest pose, where it is known and the motion ends there.
+    pub(super) way: Option<KnownWay<'a>>,
+    /// Of a motion that goes straight to the nearest pose.
+    pub(super) gain_of_way: Option<f64>,
 }
 
 /// C at the configuration of the chain, for what is `left` of the scaled error; `hessian` is memory.
@@ -96,14 +96,18 @@ impl Curvature for Edge<'_> {
     }
 
     fn known_way(&self) -> Option<KnownWay<'_>> {
-        self.straight
+        self.way
+    }
+
+    fn gain_of_way(&self) -> Option<f64> {
+        self.gain_of_way
     }
 
     fn share(&mut self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64 {
         let (columns, limits, dt) = (&self.space.columns, self.limits, self.dt);
-        let time = |known: &[f64]| {
-            let along = (dot(gradient, known), dot(gradient, rates));
-            time_to_nearest((known, rates), along, columns, limits)
+        let time = |KnownWay { way, .. }: KnownWay<'_>| {
+            let along = (dot(gradient, way), dot(gradient, rates));
+            time_to_nearest((way, rates), along, columns, limits)
         };
         match self.way.and_then(time) {
             Some(time) => {

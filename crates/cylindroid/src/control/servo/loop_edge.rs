@@ -370,8 +370,11 @@ impl Curvature for LoopCurvature<'_> {
 
     fn known_way(&self) -> Option<KnownWay<'_>> {
         let LoopEdge { has_way, way_of_motions: way, far, .. } = &*self.edge;
-        let known = self.gain_of_way.map(|gain| KnownWay { way, far: *far, gain });
-        known.filter(|_| *has_way)
+        has_way.then_some(KnownWay { way, far: *far })
+    }
+
+    fn gain_of_way(&self) -> Option<f64> {
+        self.gain_of_way
     }
 
     fn share(&mut self, way: &[f64], motions: &[f64], gradient: &[f64]) -> f64 {

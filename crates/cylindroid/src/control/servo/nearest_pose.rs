@@ -13,7 +13,7 @@
 
 use super::edge::Edge;
 use super::task_space::TaskSpace;
-use crate::control::solver::saturation::{Curvature, NewtonStep};
+use crate::control::solver::saturation::{Curvature, KnownWay, NewtonStep};
 use crate::kinematics::Chain;
 use crate::linalg::{Matrix, dot};
 use crate::model::{Limits, Mechanism};
@@ -113,8 +113,8 @@ impl NearestPose {
     }
 
     /// The way there from the last configuration (scaled), once it is found.
-    pub(super) fn known_way(&self) -> Option<&[f64]> {
-        self.has_way.then_some(&*self.way)
+    pub(super) fn known_way(&self) -> Option<KnownWay<'_>> {
+        self.has_way.then_some(KnownWay { way: &self.way, far: self.far })
     }
 
     /// The error that is left at the nearest pose.
@@ -165,7 +165,7 @@ impl NearestPose {
             dt: 0.0,
             hessian: around.hessian,
             way: None,
-            straight: None,
+            gain_of_way: None,
         };
         edge.load(&self.error, &mut self.newton.curvature);
         // A joint at a limit that would reduce the error beyond it rests.

@@ -94,16 +94,8 @@ impl Inequalities {
         let (mut least, mut most) = (0.0_f64, 1.0_f64);
         for i in 0..self.len() {
             let value = self.value(i, y);
-            let (lower, upper) = (self.lower[i], self.upper[i]);
-            if value == 0.0 {
-                if self.excess(i, value).0 > 0.0 {
-                    return None;
-                }
-                continue;
-            }
-            let (enter, leave) = if value > 0.0 { (lower, upper) } else { (upper, lower) };
-            least = least.max(enter / value);
-            most = most.min(leave / value);
+            let (enter, leave) = crossings((0.0, value), (self.lower[i], self.upper[i]))?;
+            (least, most) = (least.max(enter), most.min(leave));
         }
         (least <= most).then_some(most)
     }
@@ -129,6 +121,18 @@ impl Inequalities {
     pub(super) fn bound(&self, i: usize, sign: f64) -> f64 {
         if sign > 0.0 { self.upper[i] } else { self.lower[i] }
     }
+}
+
+/// The ends of the range of s in which `a + s b` is within the bounds; `None` if b is 0 and a is not.
+pub(in crate::control) fn crossings(
+    (a, b): (f64, f64),
+    (lower, upper): (f64, f64),
+) -> Option<(f64, f64)> {
+    if b == 0.0 {
+        return (lower <= a && a <= upper).then_some((f64::NEG_INFINITY, f64::INFINITY));
+    }
+    let (below, above) = ((lower - a) / b, (upper - a) / b);
+    Some(if b > 0.0 { (below, above) } else { (above, below) })
 }
 
 #[cfg(test)]

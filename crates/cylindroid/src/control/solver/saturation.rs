@@ -25,7 +25,7 @@ pub(in crate::control) use problem::{FED_FORWARD, LEAST_DAMPING, Problem};
 
 use super::active_set::{ActiveSet, Level, Objective, Precision};
 use super::bounds::{LimitKind, VelocityBounds};
-use super::inequalities::Inequalities;
+use super::inequalities::{Inequalities, crossings};
 use crate::inverse::Method;
 use crate::linalg::{Matrix, Svd, norm};
 
@@ -365,20 +365,10 @@ pub(in crate::control) fn interval(
     let mut least = 0.0_f64;
     let mut span = Span { most: 1.0, cause: LimitKind::Velocity };
     for ((a, b), bound) in a.iter().zip(b).zip(bounds) {
-        if *b == 0.0 {
-            if !bound.contains(*a) {
-                return None;
-            }
-            continue;
-        }
-        let (lower, upper) = ((bound.lower - a) / b, (bound.upper - a) / b);
-        let (enter, leave, cause) = if *b > 0.0 {
-            (lower, upper, bound.upper_cause)
-        } else {
-            (upper, lower, bound.lower_cause)
-        };
+        let (enter, leave) = crossings((*a, *b), (bound.lower, bound.upper))?;
         least = least.max(enter);
         if leave < span.most {
+            let cause = if *b > 0.0 { bound.upper_cause } else { bound.lower_cause };
             span = Span { most: leave, cause };
         }
     }

@@ -1,6 +1,6 @@
 //! Targets beyond reach: an arm comes to rest at the nearest pose, and says so.
 
-use cylindroid::control::{Stall, Status};
+use cylindroid::control::{Stall, Status, Task};
 use cylindroid::inverse::Method;
 use cylindroid::model::{JointKind, JointSpec, Limits};
 use cylindroid::{Mechanism, Pose, Rotation, Servo, ServoOptions, Vec3, catalogue};
@@ -125,9 +125,9 @@ fn arm_on_a_slide(world: Pose, size: f64) -> Mechanism {
 }
 
 /// The way to the edge, step by step, in angles and old units of length.
-fn way_to_the_edge(world: Pose, size: f64) -> Vec<Vec<f64>> {
+fn way_to_the_edge(task: Task, world: Pose, size: f64) -> Vec<Vec<f64>> {
     let robot = arm_on_a_slide(world, size);
-    let mut options = ServoOptions { dt: 1e-2, ..ServoOptions::new(&robot) };
+    let mut options = ServoOptions { dt: 1e-2, task, ..ServoOptions::new(&robot) };
     options.tolerance.position *= size;
     // The slide costs as much in every unit.
     options.joint_weights = vec![1.0 / (size * size), 1.0, 1.0, 1.0, 1.0];
@@ -149,18 +149,21 @@ fn way_to_the_edge(world: Pose, size: f64) -> Vec<Vec<f64>> {
 
 #[test]
 fn the_way_to_the_edge_depends_on_no_frame_and_no_unit() {
-    let own = way_to_the_edge(Pose::IDENTITY, 1.0);
-    let moves = own[0].iter().zip(own.last().unwrap()).map(|(a, b)| (a - b).abs());
-    assert!(moves.fold(0.0, f64::max) > 0.2, "it hardly moves");
     let elsewhere = Pose {
         rotation: Rotation::exp(Vec3::new(0.4, -1.1, 0.7)),
         translation: Vec3::new(3.0, -2.0, 0.5),
     };
-    for (world, size) in [(elsewhere, 1.0), (Pose::IDENTITY, 1e-3), (elsewhere, 40.0)] {
-        let other = way_to_the_edge(world, size);
-        for (step, (a, b)) in own.iter().zip(&other).enumerate() {
-            let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(apart < 1e-8, "step {step} at {size}: {apart:e}");
+    // Towards a position the arm has self-motions, and takes its way straight.
+    for task in [Task::POSE, Task::POSITION] {
+        let own = way_to_the_edge(task, Pose::IDENTITY, 1.0);
+        let moves = own[0].iter().zip(own.last().unwrap()).map(|(a, b)| (a - b).abs());
+        assert!(moves.fold(0.0, f64::max) > 0.2, "it hardly moves");
+        for (world, size) in [(elsewhere, 1.0), (Pose::IDENTITY, 1e-3), (elsewhere, 40.0)] {
+            let other = way_to_the_edge(task, world, size);
+            for (step, (a, b)) in own.iter().zip(&other).enumerate() {
+                let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart < 1e-8, "{task:?}: step {step} at {size}: {apart:e}");
+            }
         }
     }
 }

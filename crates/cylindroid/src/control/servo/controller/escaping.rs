@@ -77,7 +77,7 @@ impl Servo {
             dt: self.options.dt,
             hessian: &mut self.hessian,
             way: None,
-            straight: None,
+            gain_of_way: None,
         };
         let folds = escape.folds_at_limit(task, &mut edge);
         if !(folds || escape.progress.is_lost) || !escape.solve(task, &mut edge, folds) {

@@ -14,9 +14,7 @@ use super::super::step::DesiredMotion;
 use super::Servo;
 use crate::closure::assemble;
 use crate::control::solver::bounds::VelocityBounds;
-use crate::control::solver::saturation::{
-    Curvature, KnownWay, Path, Problem, Saturation, brake, solve,
-};
+use crate::control::solver::saturation::{Curvature, Path, Problem, Saturation, brake, solve};
 use crate::error::Result;
 use crate::linalg::RowSpace;
 use crate::spatial::{Pose, Twist};
@@ -151,20 +149,17 @@ impl Servo {
         let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };
         let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
         let Some(coupled) = &mut self.coupled else {
-            let nearest = self.nearest_pose.as_ref().filter(|_| ends_at_the_edge);
-            let way = nearest.and_then(|nearest| nearest.known_way());
-            let far = nearest.map_or(0.0, |nearest| nearest.left().powi(2));
             // Arms without self-motions do not swing, and come back to targets less often from this way.
-            let gain_of_way = gain_of_way.filter(|_| self.task.rows() < self.task.cols());
-            let straight = way.zip(gain_of_way).map(|(way, gain)| KnownWay { way, far, gain });
+            let nearest = self.nearest_pose.as_ref().filter(|_| ends_at_the_edge);
+            let has_self_motions = self.task.rows() < self.task.cols();
             let mut edge = Edge {
                 chain: &self.chain,
                 space: &self.space,
                 limits: &self.limits,
                 dt: self.options.dt,
                 hessian: &mut self.hessian,
-                way,
-                straight,
+                way: nearest.and_then(|nearest| nearest.known_way()),
+                gain_of_way: gain_of_way.filter(|_| has_self_motions),
             };
             let (secondary, rates) = (&self.secondary, &mut self.primary);
             return Ok(self.saturator.apply(problem, secondary, Some((&mut edge, path)), rates));

@@ -37,8 +37,6 @@ pub(in crate::control) struct KnownWay<'a> {
     pub(in crate::control) way: &'a [f64],
     /// The squared error there.
     pub(in crate::control) far: f64,
-    /// Velocities for a way of 1 [1/s].
-    pub(in crate::control) gain: f64,
 }
 
 /// The second derivatives of a task, and the limits of its joints.
@@ -50,8 +48,11 @@ pub(in crate::control) trait Curvature {
     /// task along the unknowns.
     fn share(&mut self, way: &[f64], rates: &[f64], gradient: &[f64]) -> f64;
 
-    /// The way to the nearest pose, where it may be taken straight.
+    /// The way to the nearest pose, once it is found.
     fn known_way(&self) -> Option<KnownWay<'_>>;
+
+    /// Velocities for a way of 1 where it may be taken straight [1/s].
+    fn gain_of_way(&self) -> Option<f64>;
 }
 
 /// The path of a task.
@@ -72,9 +73,10 @@ pub(super) struct Curved {
     level: Level,
     way: Vec<f64>,
     rates: Vec<f64>,
+    /// J^T x, x the task.
     gradient: Vec<f64>,
-    /// Of the task.
-    speed: f64,
+    /// J^T e
+    descent: Vec<f64>,
 }
 
 impl Curved {
@@ -86,7 +88,7 @@ impl Curved {
             way: vec![0.0; n],
             rates: vec![0.0; n],
             gradient: vec![0.0; n],
-            speed: 0.0,
+            descent: vec![0.0; n],
         }
     }
 
@@ -111,15 +113,15 @@ impl Curved {
         let rounding = ROUNDING * norm(&self.rates);
         self.rates.iter_mut().filter(|rate| rate.abs() <= rounding).for_each(|rate| *rate = 0.0);
         self.newton.rows_into(&mut self.level.rows);
-        self.speed = norm(&task.target);
-        let share = if self.speed > FED_FORWARD * p.gain * error {
+        let speed = norm(&task.target);
+        let share = if speed > FED_FORWARD * p.gain * error {
             1.0
         } else {
             for (j, g) in self.gradient.iter_mut().enumerate() {
                 *g = dot(p.j.column(j), &task.target);
             }
-            let is_straight =
-                curvature.known_way().is_some_and(|known| self.head_straight(p, known));
+            let known = curvature.known_way().zip(curvature.gain_of_way());
+            let is_straight = known.is_some_and(|known| self.head_straight(p, speed, known));
             let whole = curvature.share(&self.way, &self.rates, &self.gradient);
             if is_straight {
                 self.rates.iter_mut().for_each(|rate| *rate *= whole);
@@ -143,24 +145,30 @@ impl Curved {
         set.least_residual(&mut self.level, Precision::STRAIGHT);
     }
 
-    /// Replaces the velocities by those along the way, at most as fast as the task; false where it is
-    /// not taken.
-    fn head_straight(&mut self, p: &Problem<'_>, known: KnownWay<'_>) -> bool {
-        let KnownWay { way, far, gain } = known;
-        let columns = || (0..p.j.cols()).map(|j| p.j.column(j));
+    /// Replaces the velocities by those along the way, at most as fast as the task, whose speed is
+    /// `speed`; false where it is not taken.
+    fn head_straight(
+        &mut self,
+        p: &Problem<'_>,
+        speed: f64,
+        (KnownWay { way, far }, gain): (KnownWay<'_>, f64),
+    ) -> bool {
+        for (j, d) in self.descent.iter_mut().enumerate() {
+            *d = dot(p.j.column(j), p.error);
+        }
         let fall = 0.5 * (dot(p.error, p.error) - far);
-        let along: f64 = columns().zip(way).map(|(column, w)| dot(column, p.error) * w).sum();
+        let along = dot(&self.descent, way);
         if !(along > -WINDING * fall) {
             return false;
         }
-        let steepest: f64 = columns().map(|column| dot(column, p.error).powi(2)).sum();
+        let steepest = dot(&self.descent, &self.descent);
         let less = (fall - along).max(0.0);
         let more = if steepest > 0.0 { less / steepest } else { 0.0 };
-        for ((rate, column), w) in self.rates.iter_mut().zip(columns()).zip(way) {
-            *rate = gain * (w + more * dot(column, p.error));
+        for ((rate, d), w) in self.rates.iter_mut().zip(&self.descent).zip(way) {
+            *rate = gain * (w + more * d);
         }
         p.j.mul_vec_into(&self.rates, &mut self.left);
-        let scale = (self.speed / norm(&self.left)).min(1.0);
+        let scale = (speed / norm(&self.left)).min(1.0);
         self.rates.iter_mut().for_each(|rate| *rate *= scale);
         true
     }
