@@ -26,6 +26,7 @@ mod tracking;
 mod velocity_mode;
 
 use super::coupled::Coupled;
+use super::elsewhere::Elsewhere;
 use super::escape::Escape;
 use super::following::TargetFollower;
 use super::inertia_weights::InertiaWeights;
@@ -92,8 +93,9 @@ pub struct Servo {
     last: Vec<f64>,
     /// Derivatives of the Jacobian; trees only.
     hessian: Vec<Matrix>,
-    /// To targets beyond reach; trees of joints with one coordinate only.
+    /// Where targets may be beyond reach; trees of joints with one coordinate only.
     nearest_pose: Option<Box<NearestPose>>,
+    elsewhere: Option<Box<Elsewhere>>,
     /// The same of closed chains.
     loop_edge: Option<Box<LoopEdge>>,
     /// The pose towards which the motion of this step ends, and its error.
@@ -211,6 +213,7 @@ impl Servo {
             hessian,
             last: vec![0.0; rates],
             nearest_pose: None,
+            elsewhere: None,
             loop_edge: None,
             edge_aim: None,
             edge_error: vec![0.0; m],
@@ -244,6 +247,7 @@ impl Servo {
         } else {
             let length = servo.options.length;
             let nearest_pose = NearestPose::new(mechanism, &servo.chain, m, length);
+            servo.elsewhere = nearest_pose.as_ref().and_then(Elsewhere::new).map(Box::new);
             servo.nearest_pose = nearest_pose.map(Box::new);
             servo.find_generic_rank()
         };
@@ -319,10 +323,11 @@ impl Servo {
         let rank = self.kept.iter().filter(|kept| **kept).count();
         self.load_secondary(secondary_velocities);
         self.load_edge_aim(&target, pose);
+        self.search_edge(q)?;
 
         let (saturation, braking) = match self.store_unlimited_rates(q, rank) {
             Some(braking) => (Saturation::NONE, braking),
-            None => self.store_limited_rates(q)?,
+            None => self.store_limited_rates()?,
         };
 
         self.note_configuration(q);
@@ -443,6 +448,9 @@ impl Servo {
         }
         if let Some(nearest_pose) = &mut self.nearest_pose {
             nearest_pose.reset();
+        }
+        if let Some(elsewhere) = &mut self.elsewhere {
+            elsewhere.reset();
         }
         if let Some(edge) = &mut self.loop_edge {
             edge.reset();

@@ -10,6 +10,7 @@ mod approach;
 mod controller;
 mod coupled;
 mod edge;
+mod elsewhere;
 mod escape;
 mod following;
 mod inertia_weights;

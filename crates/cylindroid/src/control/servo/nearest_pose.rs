@@ -9,7 +9,7 @@
 //!          configuration descends
 //! Why so   the curvature at the present configuration gives the way that is left only near its end.
 //!          Joints with small acceleration limits must brake from far away
-//! Checked  tests/it/servo/edge.rs
+//! Checked  tests/it/servo/edge.rs, tests/it/servo/just_beyond.rs
 
 use super::edge::Edge;
 use super::task_space::TaskSpace;
@@ -29,6 +29,8 @@ pub(super) const LONGEST: f64 = 0.4;
 pub(super) const HALVINGS: usize = 6;
 /// A step below this share of the way that is left has arrived [-].
 pub(super) const ARRIVED: f64 = 0.02;
+/// Coordinates without limits start within a turn to both sides, or so many characteristic lengths [-].
+const FREE: f64 = std::f64::consts::PI;
 /// A step below this has arrived as well [rad, or characteristic lengths].
 pub(super) const SHORT: f64 = 1e-6;
 
@@ -82,6 +84,7 @@ pub(super) struct NearestPose {
     /// From the present configuration, scaled.
     way: Vec<f64>,
     has_way: bool,
+    has_arrived: bool,
 }
 
 impl NearestPose {
@@ -104,7 +107,13 @@ impl NearestPose {
             step: vec![0.0; n],
             way: vec![0.0; n],
             has_way: false,
+            has_arrived: false,
         })
+    }
+
+    /// Number of joints.
+    pub(super) fn joints(&self) -> usize {
+        self.chain.n()
     }
 
     /// Forgets the last result.
@@ -117,18 +126,23 @@ impl NearestPose {
         self.has_way.then_some(KnownWay { way: &self.way, far: self.far })
     }
 
+    /// True once the search moves no more.
+    pub(super) fn has_arrived(&self) -> bool {
+        self.has_arrived
+    }
+
     /// The error that is left at the nearest pose.
     pub(super) fn left(&self) -> f64 {
         self.far.sqrt()
     }
 
     /// Moves on towards the nearest pose from the present configuration `q`, whose squared error is
-    /// `present`.
+    /// `present`. Errors up to `met` are those of poses in reach: there it ends at once.
     pub(super) fn search(
         &mut self,
         q: &[f64],
         target: Pose,
-        present: f64,
+        (present, met): (f64, f64),
         around: &mut Surroundings<'_>,
     ) {
         let mut far = if self.is_known { self.load(target, around) } else { f64::INFINITY };
@@ -138,14 +152,7 @@ impl NearestPose {
             far = self.load(target, around);
         }
         self.is_known = true;
-        let mut moved = f64::INFINITY;
-        for _ in 0..STEPS {
-            if moved <= SHORT {
-                break;
-            }
-            moved = self.advance(target, &mut far, around);
-        }
-        self.far = far;
+        let moved = self.descend(target, (far, met), around);
         let mut left = 0.0_f64;
         for (i, (way, &c)) in self.way.iter_mut().zip(self.chain.coordinates()).enumerate() {
             let change = self.q[c] - q[c];
@@ -153,6 +160,56 @@ impl NearestPose {
             *way = around.space.scaled_rate(i, change);
         }
         self.has_way = moved <= SHORT.max(ARRIVED * left);
+    }
+
+    /// True if joints at these velocities do not stop within the way from `q`: its length is below that in
+    /// which all brake.
+    pub(super) fn is_overrun(&self, q: &[f64], rates: &[f64], limits: &[Limits]) -> bool {
+        let places = self.chain.coordinates().iter().zip(limits).zip(&self.sizes);
+        let (mut stops, mut way) = (0.0, 0.0);
+        for ((&c, limits), size) in places {
+            stops += (0.5 * rates[c] * rates[c] / limits.acceleration / size).powi(2);
+            way += ((self.q[c] - q[c]) / size).powi(2);
+        }
+        stops >= way
+    }
+
+    /// Starts elsewhere, at coordinates that are drawn between two numbers.
+    pub(super) fn start(&mut self, limits: &[Limits], mut draw: impl FnMut([f64; 2]) -> f64) {
+        let places = self.chain.coordinates().iter().zip(limits).zip(&self.sizes);
+        for ((&c, limits), size) in places {
+            let free = FREE * size;
+            let lower = if limits.lower.is_finite() { limits.lower } else { -free };
+            let upper = if limits.upper.is_finite() { limits.upper } else { free };
+            self.q[c] = draw([lower, upper]);
+        }
+        self.is_known = true;
+    }
+
+    /// Moves on from the last configuration of the search; errors up to `met` are those of poses in reach.
+    pub(super) fn move_on(&mut self, target: Pose, met: f64, around: &mut Surroundings<'_>) {
+        let far = self.load(target, around);
+        self.descend(target, (far, met), around);
+    }
+
+    /// Some steps from a configuration with the squared error `far`; the largest change of a joint in the
+    /// last one.
+    fn descend(
+        &mut self,
+        target: Pose,
+        (mut far, met): (f64, f64),
+        around: &mut Surroundings<'_>,
+    ) -> f64 {
+        let mut moved = f64::INFINITY;
+        for _ in 0..STEPS {
+            if moved <= SHORT || far <= met * met {
+                break;
+            }
+            moved = self.advance(target, &mut far, around);
+        }
+        self.far = far;
+        self.has_arrived = moved <= SHORT;
+        moved
     }
 
     /// One step; the largest change of a joint.

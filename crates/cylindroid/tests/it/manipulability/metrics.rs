@@ -69,12 +69,16 @@ fn limits_measure() {
         .with_torque_limits(&[3.0, 7.0])
         .unwrap();
     assert!(!metrics.is_dual());
+    // The duals given by themselves are those in effect without them.
+    let dual = Metrics { torque: metrics.joint.as_ref().map(Metric::dual), ..metrics.clone() };
+    assert!(dual.is_dual());
     let m = Manipulability::of(&relation, &metrics).unwrap();
     assert_close("rates", &m.kinematic.values(), &[4.0, 0.25], 1e-14);
     assert_close("forces", &m.force.values(), &[49.0, 9.0], 1e-12);
     for limits in [[1.0, 0.0], [1.0, f64::INFINITY], [f64::NAN, 1.0]] {
         let error = Metrics::UNIT.with_velocity_limits(&limits).unwrap_err().to_string();
         assert!(error.starts_with("velocity limit = "), "{error}");
+        assert!(error.contains("limits used as a metric must be positive and finite"), "{error}");
     }
 }
 

@@ -288,3 +288,21 @@ fn the_default_ramp_costs_no_targets() {
         assert!(with + 3 >= without, "{name}: {with} {without}");
     }
 }
+
+/// Bounds of one sign, of a joint that must go on, are met at their values too.
+#[test]
+fn bounds_of_one_sign_are_met() {
+    let bounds = VelocityBounds {
+        lower: -2.0,
+        upper: -1.0,
+        lower_cause: LimitKind::Velocity,
+        upper_cause: LimitKind::Position,
+    };
+    assert_eq!(bounds.met(-1.0), Some(LimitKind::Position));
+    assert_eq!(bounds.met(-1.5), None);
+    assert_eq!(bounds.met(-2.0), Some(LimitKind::Velocity));
+    let (lower, upper) = (-bounds.upper, -bounds.lower);
+    let mirrored = VelocityBounds { lower, upper, ..bounds };
+    assert_eq!(mirrored.met(1.0), Some(LimitKind::Velocity));
+    assert_eq!(mirrored.met(2.0), Some(LimitKind::Position));
+}

@@ -12,6 +12,7 @@ mod inertia;
 mod internal_force;
 mod inverse_choice;
 mod jerk;
+mod just_beyond;
 mod limits;
 mod measured;
 mod moving;

@@ -3,9 +3,12 @@
 //! Formula  the target; of a twist v, the tool moved by s T v, T = 1 / gain + max |v_i| / A_i, in which
 //!          all joints stop, s the share of v within the speeds of the joints
 //! Units    s, scaled task coordinates
+//! Valid    of trees a target is out of reach where the length of the chain proves it, or the search has
+//!          found the nearest pose and no other configuration that reaches it (`elsewhere.rs`)
 //! Why so   a twist has no end. Joints with small acceleration limits must brake before the edge of
 //!          the workspace, or they swing through it
-//! Checked  tests/it/servo/edge.rs, tests/it/servo/closed_edges.rs, tests/it/servo/twist.rs
+//! Checked  tests/it/servo/edge.rs, tests/it/servo/just_beyond.rs, tests/it/servo/closed_edges.rs,
+//!          tests/it/servo/twist.rs
 
 use super::super::loop_edge::LoopSurroundings;
 use super::super::nearest_pose::{EdgeAim, Surroundings};
@@ -25,8 +28,8 @@ const LEFT: f64 = 0.1;
 /// Errors below this are those of poses in reach (scaled) [-].
 const NONE_LEFT: f64 = 1e-5;
 
-/// Errors of closed chains up to this are those of targets that are tracked (scaled) [-]: joints that
-/// follow them at the usual gain stop within a hundredth of a radian at 0.5 rad/s^2.
+/// Errors up to this are those of targets that are tracked, of arms where no singularity is near (scaled)
+/// [-]: joints that follow them at the usual gain stop within a hundredth of a radian at 0.5 rad/s^2.
 const TRACKED: f64 = 0.02;
 
 /// Velocities of joints this many times as large as that of the task approach an edge (scaled) [-].
@@ -52,8 +55,12 @@ impl Servo {
         let is_near = is_weak || self.kept.iter().any(|kept| !kept);
         // Closed chains swing at the edge without acceleration limits too. Where they only track a
         // target they pay for no search.
-        let is_tracked = !is_fed_forward && norm(&self.projected_error) <= TRACKED;
-        if is_coupled && is_tracked || !(self.accelerates || is_coupled && is_near) {
+        let is_close = !is_fed_forward && norm(&self.projected_error) <= TRACKED;
+        let is_tracked = is_close && (is_coupled || !is_near && !is_out_of_reach);
+        if let Some(elsewhere) = self.elsewhere.as_mut().filter(|_| is_tracked) {
+            elsewhere.note_in_reach();
+        }
+        if is_tracked || !(self.accelerates || is_coupled && is_near) {
             return;
         }
         if is_fed_forward {
@@ -81,7 +88,7 @@ impl Servo {
                 is_out_of_reach: false,
                 is_ahead: true,
             });
-        } else if is_out_of_reach || is_coupled {
+        } else if is_out_of_reach || is_coupled || self.elsewhere.is_some() {
             self.edge_error.copy_from_slice(&self.projected_error);
             self.edge_aim =
                 Some(EdgeAim { pose: target.pose, gain, is_out_of_reach, is_ahead: false });
@@ -113,8 +120,16 @@ impl Servo {
         })
     }
 
-    /// Searches the nearest pose; true if it is the end of the motion.
-    pub(super) fn search_edge(&mut self, q: &[f64]) -> Result<bool> {
+    /// Searches the nearest pose; where it is not the end of the motion, joints need not brake for it.
+    pub(super) fn search_edge(&mut self, q: &[f64]) -> Result<()> {
+        if !self.ends_at_the_edge(q)? {
+            self.edge_aim = None;
+        }
+        Ok(())
+    }
+
+    /// True if the motion ends at the nearest pose, as far as the search has come.
+    fn ends_at_the_edge(&mut self, q: &[f64]) -> Result<bool> {
         let Some(aim) = self.edge_aim else { return Ok(false) };
         let is_whole = self.options.projection == TaskProjection::Orthogonal;
         let present = dot(&self.edge_error, &self.edge_error);
@@ -137,9 +152,23 @@ impl Servo {
                     limits: &self.limits,
                     hessian: &mut self.hessian,
                 };
-                nearest_pose.search(q, aim.pose, present, &mut around);
+                nearest_pose.search(q, aim.pose, (present, NONE_LEFT), &mut around);
+                let least = if nearest_pose.has_arrived() { NONE_LEFT } else { least };
                 let is_found = nearest_pose.known_way().is_some() && nearest_pose.left() > least;
-                Ok(aim.is_out_of_reach || is_found)
+                let Some(elsewhere) = &mut self.elsewhere else {
+                    return Ok(aim.is_out_of_reach || is_found);
+                };
+                if aim.is_ahead || aim.is_out_of_reach {
+                    return Ok(aim.is_out_of_reach || is_found);
+                }
+                if nearest_pose.left() <= NONE_LEFT {
+                    elsewhere.note_in_reach();
+                } else if is_found {
+                    elsewhere.move_on(aim.pose, NONE_LEFT, &mut around);
+                    let is_overrun = nearest_pose.is_overrun(q, &self.rates, &self.limits);
+                    elsewhere.note_out_of_reach(is_overrun);
+                }
+                Ok(elsewhere.is_the_end())
             }
             _ => Ok(aim.is_out_of_reach),
         }

@@ -14,9 +14,9 @@ use crate::linalg::{dot, norm};
 
 impl Servo {
     /// Bounds, computes and stores the joint velocities.
-    pub(super) fn store_limited_rates(&mut self, q: &[f64]) -> Result<(Saturation, BrakingState)> {
+    pub(super) fn store_limited_rates(&mut self) -> Result<(Saturation, BrakingState)> {
         self.load_bounds();
-        let mut saturation = self.saturate(q)?;
+        let mut saturation = self.saturate()?;
         Error::check_finite("joint velocities", &self.primary)?;
         let share = self.progress();
         if share.is_some() && self.escape() {

@@ -133,24 +133,23 @@ impl Servo {
         Ok(found.closed.then_some(found.q))
     }
 
-    /// Bounds the primary and secondary velocities of a step from `q`.
-    pub(super) fn saturate(&mut self, q: &[f64]) -> Result<Saturation> {
+    /// Bounds the primary and secondary velocities of a step.
+    pub(super) fn saturate(&mut self) -> Result<Saturation> {
         for i in 0..self.last.len() {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
-        let ends_at_the_edge = self.search_edge(q)?;
         let gain = self.options.gain.position.min(self.options.gain.orientation);
         let (gain, error) = match self.edge_aim {
-            Some(aim) if ends_at_the_edge => (aim.gain, &self.edge_error),
+            Some(aim) => (aim.gain, &self.edge_error),
             _ => (gain, &self.projected_error),
         };
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
-        let path = if ends_at_the_edge { Path::Curved } else { Path::Straight };
+        let path = if self.edge_aim.is_some() { Path::Curved } else { Path::Straight };
         let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
         let Some(coupled) = &mut self.coupled else {
             // Arms without self-motions do not swing, and come back to targets less often from this way.
-            let nearest = self.nearest_pose.as_ref().filter(|_| ends_at_the_edge);
+            let nearest = self.nearest_pose.as_ref().filter(|_| self.edge_aim.is_some());
             let has_self_motions = self.task.rows() < self.task.cols();
             let mut edge = Edge {
                 chain: &self.chain,
@@ -168,7 +167,9 @@ impl Servo {
         let around =
             LoopSurroundings { task: self.options.task, limits: &self.limits, dt: self.options.dt };
         let mut edge = match &mut self.loop_edge {
-            Some(edge) if ends_at_the_edge => Some(LoopCurvature { edge, around, gain_of_way }),
+            Some(edge) if self.edge_aim.is_some() => {
+                Some(LoopCurvature { edge, around, gain_of_way })
+            }
             _ => None,
         };
         let curvature = edge.as_mut().map(|edge| (edge as &mut dyn Curvature, path));

@@ -6,8 +6,8 @@
 //!          times the Newton step to it, (J^T J + C)^-1 J^T e; s lets every joint stop within that
 //! Straight where the way w to the nearest pose, with the error e*, is known: y = s k (w + t J^T e), k its
 //!          gain, t >= 0 the least with which |e|^2 / 2 falls at first by f, its fall on the whole way: a
-//!          path along which it is convex does so. Not where w climbs by more than `WINDING` f: the way
-//!          winds; of trees only those with self-motions, m < n
+//!          path along which it is convex does so; |t J^T e| is at most `ASIDE` |w|. Not where w climbs by
+//!          more than `WINDING` f: the way winds; of trees only those with self-motions, m < n
 //! Shapes   J: m x n, C: n x n, w: n
 //! Valid    e_l is at most as large as the error
 //! Why so   |J y - x|^2 alone ends with full speed at the edge of reach, and a scalar damping that
@@ -29,6 +29,10 @@ const ROUNDING: f64 = 1e-9;
 /// Share of its fall by which the error may rise at first on a way that is taken straight [-]. Found by
 /// experiment: 3RRR robots pass type II singularities on ways that wind, two arms rise by less.
 const WINDING: f64 = 0.3;
+
+/// The largest motion along the gradient that is added to a way, as a share of its length [-]: near the edge,
+/// where the gradient ceases, a longer one leads to and fro (found by experiment with a panda).
+const ASIDE: f64 = 0.5;
 
 /// The way to the nearest pose.
 #[derive(Debug, Clone, Copy)]
@@ -163,7 +167,8 @@ impl Curved {
         }
         let steepest = dot(&self.descent, &self.descent);
         let less = (fall - along).max(0.0);
-        let more = if steepest > 0.0 { less / steepest } else { 0.0 };
+        let most = ASIDE * (dot(way, way) / steepest).sqrt();
+        let more = if steepest > 0.0 { (less / steepest).min(most) } else { 0.0 };
         for ((rate, d), w) in self.rates.iter_mut().zip(&self.descent).zip(way) {
             *rate = gain * (w + more * d);
         }
