@@ -144,9 +144,7 @@ fn way_to_the_edge(task: Task, target: Vec3, world: Pose, size: f64) -> Vec<Vec<
         servo.advance(&mut q);
         way.push(std::iter::once(q[0] / size).chain(q[1..].iter().copied()).collect());
     }
-    let stall = servo.stall();
-    let ends = status == Status::Stalled || matches!(stall, Stall::OutOfReach { .. });
-    assert!(ends, "{status:?} {stall:?}");
+    assert_ne!(status, Status::Reached);
     way
 }
 
