@@ -35,7 +35,8 @@ fn arm(name: &str, acceleration: f64) -> Mechanism {
     }
     let weak = JointLimits { acceleration: Some(acceleration), ..JointLimits::default() };
     let moves = |i: usize| robot.coordinates().iter().any(|c| c.joint == i);
-    let joints = robot.joints().iter().enumerate().filter(|(i, _)| moves(*i));
+    let joints = robot.joints().iter().enumerate();
+    let joints = joints.filter(|(i, joint)| moves(*i) && joint.mimic.is_none());
     let limits: Vec<_> = joints.map(|(_, joint)| (joint.name.clone(), weak)).collect();
     robot.with_limits(&limits).unwrap()
 }
@@ -90,7 +91,9 @@ fn targets_beyond(name: &str, task: Task, direction: Vec3) -> impl Iterator<Item
 fn targets_just_beyond_reach_are_approached_once() {
     let cases = [("ur5e", Task::POSITION, 1e-3), ("ur5e", Task::POSE, 0.02)];
     let more = [("puma560", Task::POSITION, 1e-3), ("iiwa14", Task::POSE, 0.02)];
-    for (name, task, back) in cases.into_iter().chain(more) {
+    // Five joints: no target of a pose is met.
+    let fewer = [("youbot", Task::POSE, 1e-3)];
+    for (name, task, back) in cases.into_iter().chain(more).chain(fewer) {
         for acceleration in [0.5, 5.0, f64::INFINITY] {
             let robot = arm(name, acceleration);
             for direction in DIRECTIONS {
