@@ -123,7 +123,7 @@ impl Inequalities {
     }
 }
 
-/// The ends of the range of s in which `a + s b` is within the bounds; `None` if b is 0 and a is not.
+/// The ends of the range of s in which `a + s b` is within the bounds; `None` if b is 0 and a beyond them.
 pub(in crate::control) fn crossings(
     (a, b): (f64, f64),
     (lower, upper): (f64, f64),
