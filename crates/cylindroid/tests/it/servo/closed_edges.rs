@@ -56,7 +56,7 @@ impl ToTheEdge {
 }
 
 /// A model of the catalogue whose actuated joints have this acceleration limit.
-fn weakened(name: &str, acceleration: f64) -> Mechanism {
+pub(super) fn weakened(name: &str, acceleration: f64) -> Mechanism {
     let robot = catalogue::load(name).unwrap();
     let weak = JointLimits { acceleration: Some(acceleration), ..JointLimits::default() };
     let is_actuated = |i: usize| robot.coordinates().iter().any(|c| c.joint == i && c.actuated);

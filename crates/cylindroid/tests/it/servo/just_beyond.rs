@@ -1,8 +1,7 @@
 //! Targets just beyond reach, and those that leave it: nearer than the length of the stretched arm, so that
 //! no length proves them out of reach.
 
-use cylindroid::model::JointLimits;
-
+use super::closed_edges::weakened;
 use super::*;
 
 /// A motion; lengths are over the reach of the arm.
@@ -29,16 +28,10 @@ const DIRECTIONS: [Vec3; 5] =
 
 /// With this acceleration limit of all joints; infinity for those of the catalogue.
 fn arm(name: &str, acceleration: f64) -> Mechanism {
-    let robot = catalogue::load(name).unwrap();
-    if acceleration == f64::INFINITY {
-        return robot;
+    match acceleration {
+        f64::INFINITY => catalogue::load(name).unwrap(),
+        _ => weakened(name, acceleration),
     }
-    let weak = JointLimits { acceleration: Some(acceleration), ..JointLimits::default() };
-    let moves = |i: usize| robot.coordinates().iter().any(|c| c.joint == i);
-    let joints = robot.joints().iter().enumerate();
-    let joints = joints.filter(|(i, joint)| moves(*i) && joint.mimic.is_none());
-    let limits: Vec<_> = joints.map(|(_, joint)| (joint.name.clone(), weak)).collect();
-    robot.with_limits(&limits).unwrap()
 }
 
 /// From home, until a verdict has held for a second, `seconds` at most.

@@ -155,12 +155,10 @@ impl Servo {
                 nearest_pose.search(q, aim.pose, (present, NONE_LEFT), &mut around);
                 let least = if nearest_pose.has_arrived() { NONE_LEFT } else { least };
                 let is_found = nearest_pose.known_way().is_some() && nearest_pose.left() > least;
-                let Some(elsewhere) = &mut self.elsewhere else {
+                let is_open = !aim.is_ahead && !aim.is_out_of_reach;
+                let Some(elsewhere) = self.elsewhere.as_mut().filter(|_| is_open) else {
                     return Ok(aim.is_out_of_reach || is_found);
                 };
-                if aim.is_ahead || aim.is_out_of_reach {
-                    return Ok(aim.is_out_of_reach || is_found);
-                }
                 if nearest_pose.left() <= NONE_LEFT {
                     elsewhere.note_in_reach();
                 } else if is_found {
