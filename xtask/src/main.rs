@@ -87,7 +87,7 @@ cargo xtask <task>
             the same by coverage (libFuzzer, needs a C++ compiler): files of every format, messages
             of the viewer, the bounded solver against its conditions of optimality, servo steps;
             inputs are kept in target/fuzz
-  mutants [--sample N] [--seed S] [--minutes M] [--folder F]
+  mutants [--sample N] [--seed S] [--minutes M] [--folder F] [--at FILE:LINE]
             changes one operator, sign, number or function of the mathematics at a time, and prints
             which of 40 changes the tests catch, with an interval
   bench-peers [--quick] [--only NAMES]

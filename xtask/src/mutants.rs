@@ -40,20 +40,25 @@ const FOLDERS: [&str; 11] = [
     "spatial",
 ];
 
-/// `--sample N` mutants (40) of `--folder F` (all), drawn with `--seed S` (1), within `--minutes M`.
+/// `--sample N` mutants (40) of `--folder F` (all), drawn with `--seed S` (1), within `--minutes M`;
+/// or one of each line `--at FILE:LINE`.
 ///
 /// # Errors
-/// Tests that fail without a mutant; a copy that does not build.
+/// Tests that fail without a mutant; a copy that does not build; a line without mutants.
 pub(crate) fn task(arguments: &[String]) -> Result<()> {
     let (mut sample, mut seed, mut minutes) = (40_usize, 1_u64, f64::INFINITY);
-    let mut folders = Vec::new();
+    let (mut folders, mut lines) = (Vec::new(), Vec::new());
     for pair in arguments.chunks(2) {
         match pair {
             [flag, value] if flag == "--sample" => sample = value.parse().context("--sample")?,
             [flag, value] if flag == "--seed" => seed = value.parse().context("--seed")?,
             [flag, value] if flag == "--minutes" => minutes = value.parse().context("--minutes")?,
             [flag, value] if flag == "--folder" => folders.push(value.as_str()),
-            _ => bail!("mutants has the options --sample N, --seed S, --minutes M and --folder F"),
+            [flag, line] if flag == "--at" => lines.push(line.as_str()),
+            _ => bail!(
+                "mutants has the options --sample N, --seed S, --minutes M, --folder F and \
+                 --at FILE:LINE"
+            ),
         }
     }
     if let Some(unknown) = folders.iter().find(|folder| !FOLDERS.contains(folder)) {
@@ -71,6 +76,10 @@ pub(crate) fn task(arguments: &[String]) -> Result<()> {
         sites::find(&library.join("src"), folder, &mut sites)?;
     }
     let all = sites.len();
+    if !lines.is_empty() {
+        sites = sites::at(sites, &lines)?;
+        sample = sites.len();
+    }
     let mut mutants = sites::drawn(sites, sample, seed);
     println!("{} of {all} mutants", mutants.len());
     build(&library, &mut mutants)?;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use proc_macro2::Span;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
@@ -49,6 +49,16 @@ fn find_below(
         }
     }
     Ok(())
+}
+
+/// The mutants of these lines, FILE:LINE.
+pub(super) fn at(mut all: Vec<Mutant>, lines: &[&str]) -> Result<Vec<Mutant>> {
+    let is_at = |mutant: &Mutant, line: &str| format!("{}:{}", mutant.file, mutant.line) == line;
+    if let Some(line) = lines.iter().find(|line| !all.iter().any(|m| is_at(m, line))) {
+        bail!("--at {line}: no mutants there; a line is FILE:LINE, the file below src");
+    }
+    all.retain(|mutant| lines.iter().any(|line| is_at(mutant, line)));
+    Ok(all)
 }
 
 /// `sample` of the mutants, of which none contains another.
@@ -193,7 +203,7 @@ impl<'ast> Visit<'ast> for Visitor<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::find;
+    use super::{at, find};
 
     #[test]
     fn code_of_tests_has_no_mutants() {
@@ -214,5 +224,20 @@ mod tests {
         find(folder.path(), "a", &mut found).unwrap();
         let places: Vec<&str> = found.iter().map(|m| m.file.as_str()).collect();
         assert_eq!(places, ["a/b/c.rs", "a/b.rs"]);
+    }
+
+    #[test]
+    fn lines_are_named_by_file_and_number() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("a")).unwrap();
+        let text = "fn f(x: f64) -> f64 {\n    x + 1.0\n}\nfn g(x: f64) -> f64 {\n    -x\n}\n";
+        std::fs::write(folder.path().join("a/b.rs"), text).unwrap();
+        let mut found = Vec::new();
+        find(folder.path(), "a", &mut found).unwrap();
+        let of_f = at(found.clone(), &["a/b.rs:2"]).unwrap();
+        assert_eq!(of_f.iter().map(|m| &m.new[..]).collect::<Vec<_>>(), ["x - 1.0", "1.5"]);
+        assert_eq!(at(found.clone(), &["a/b.rs:5", "a/b.rs:2"]).unwrap().len(), 3);
+        let error = at(found, &["a/b.rs:2", "a/b.rs:3"]).unwrap_err().to_string();
+        assert!(error.starts_with("--at a/b.rs:3: no mutants there"), "{error}");
     }
 }
