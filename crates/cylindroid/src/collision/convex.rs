@@ -148,3 +148,35 @@ fn project_on_cylinder(radius: f64, half: f64, p: Vec3) -> (Vec3, Vec3, f64) {
         (Vec3::new(p.x, p.y, side * half), Vec3::Z * side, -to_end)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::uniform;
+
+    /// The ball contains the farthest points of all directions, and one of them lies on it.
+    #[test]
+    fn the_smallest_ball() {
+        let mut cores = vec![Core::Point, Core::Segment { half: 0.7 }];
+        for [x, y, z] in [[0.3, 0.5, 0.9], [0.9, 0.3, 0.5], [0.5, 0.9, 0.3]] {
+            cores.push(Core::Box { half: Vec3::new(x, y, z) });
+            cores.push(Core::Cylinder { radius: x, half: y });
+            cores.push(Core::Ellipsoid { radii: Vec3::new(x, y, z) });
+            let ends = [Vec3::X * x, Vec3::Y * y, Vec3::Z * z];
+            let octahedron = ends.iter().flat_map(|end| [*end, -*end]).collect::<Vec<_>>();
+            let (hull, _) = Hull::of(&octahedron).unwrap();
+            cores.push(Core::Hull(Arc::new(hull)));
+        }
+        let mut state = 3;
+        for core in cores {
+            let mut farthest = 0.0_f64;
+            for _ in 0..4000 {
+                let d = Vec3::from_array(std::array::from_fn(|_| 2.0 * uniform(&mut state) - 1.0));
+                farthest = farthest.max(core.support(d).norm());
+            }
+            let bound = core.bound();
+            assert!(farthest <= bound * (1.0 + 1e-12), "{core:?}: {farthest} {bound}");
+            assert!(farthest >= 0.99 * bound, "{core:?}: {farthest} {bound}");
+        }
+    }
+}

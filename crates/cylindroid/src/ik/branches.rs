@@ -317,3 +317,52 @@ fn lower_bound(sample: &Sample, sides: [Option<&Sample>; 2]) -> Option<f64> {
     }
     Some(sample.far.sqrt() - longest - MARGIN)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Samples;
+
+    /// Values in any order are kept sorted: a fold lies between neighbours.
+    #[test]
+    fn folds_lie_between_neighbouring_values() {
+        let mut samples = Samples::default();
+        for (value, solutions) in [(0.0, 4), (0.3, 4), (-0.2, 4), (0.7, 2), (0.1, 4)] {
+            samples.end_group(0, value, (solutions, [0.0; 7]));
+        }
+        assert_eq!(samples.fold_between(0, 1e-3), Some((3, 0.5)));
+        assert_eq!(samples.fold_between(0, 0.5), None);
+        assert_eq!(samples.fold_between(4, 1e-3), None);
+        samples.end_group(0, 0.5, (4, [0.0; 7]));
+        assert_eq!(samples.fold_between(0, 1e-3).map(|(place, _)| place), Some(4));
+    }
+
+    /// The lines through the outer pairs of four misses meet in the middle, below 1 or not.
+    #[test]
+    fn misses_that_may_vanish_between_values_are_looked_at() {
+        let of = |misses: [f64; 4], values: [f64; 4]| {
+            let mut samples = Samples::default();
+            for (miss, value) in misses.into_iter().zip(values) {
+                samples.end_group(0, value, (2, [0.0, miss, 0.0, 0.0, 0.0, 0.0, 0.0]));
+            }
+            samples.fold_between(0, 1e-3)
+        };
+        let even = [0.0, 1.0, 2.0, 3.0];
+        // They meet at 0.9 and 1.1, half a step away.
+        assert_eq!(of([2.1, 1.3, 1.3, 2.1], even), Some((1, 1.5)));
+        assert_eq!(of([-2.1, -1.3, -1.3, -2.1], even), Some((1, 1.5)));
+        assert_eq!(of([1.7, 1.3, 1.3, 1.7], even), None);
+        // Wider apart and closer together it is the other way round.
+        assert_eq!(of([2.1, 1.3, 1.3, 2.1], [0.0, 1.0, 1.5, 2.5]), None);
+        assert_eq!(of([1.7, 1.3, 1.3, 1.7], [0.0, 1.0, 3.0, 4.0]), Some((1, 2.0)));
+        // Of different slopes: they meet at 0.94 and 1.03.
+        assert_eq!(of([2.5, 1.5, 1.2, 1.8], even), Some((1, 1.5)));
+        assert_eq!(of([2.3, 1.5, 1.2, 1.6], even), None);
+        // A slope of 1 from values a tenth apart: 0.97, and 1.2 where they are not.
+        assert_eq!(of([1.8, 1.3, 1.3, 1.4], [0.0, 1.0, 2.0, 2.1]), Some((1, 1.5)));
+        assert_eq!(of([1.4, 1.3, 1.3, 1.8], [0.9, 1.0, 2.0, 3.0]), Some((1, 1.5)));
+        assert_eq!(of([1.8, 1.3, 1.3, 1.4], even), None);
+        // A condition that grows towards the middle, and one that is met.
+        assert_eq!(of([2.1, 1.3, 1.3, 1.2], even), None);
+        assert_eq!(of([2.1, 1.3, 0.0, 2.1], even), None);
+    }
+}

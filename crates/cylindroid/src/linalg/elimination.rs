@@ -189,4 +189,17 @@ mod tests {
         let mut a = Matrix::from_rows(&[[1.0, 0.0], [0.0, 1e-7]]).unwrap();
         assert!(!Elimination::workspace(2).eliminate(&mut a, 2, GAP));
     }
+
+    /// In other units the same ranks are open, zero and regular.
+    #[test]
+    fn a_gap_has_the_size_of_its_columns() {
+        for size in [1e-12, 1.0, 1e9] {
+            let rank = |second: f64| {
+                let mut a = Matrix::from_rows(&[[size, 0.0], [0.0, second * size]]).unwrap();
+                let mut elimination = Elimination::workspace(2);
+                elimination.eliminate(&mut a, 2, GAP.times(size)).then(|| elimination.rank())
+            };
+            assert_eq!([1e-11, 1e-7, 1e-4].map(rank), [Some(1), None, Some(2)], "{size}");
+        }
+    }
 }

@@ -140,3 +140,26 @@ fn pairs_have_a_limit() {
     let error = CollisionModel::new(&star(3000), &options).unwrap_err().to_string();
     assert!(error.contains("3000 shapes") && error.contains("more than 4000000 pairs"), "{error}");
 }
+
+/// An obstacle is watched against the links that move, a half-space not against another: they have no
+/// distance.
+#[test]
+fn obstacles_are_watched_against_links_that_move() {
+    let options = CollisionOptions { samples: 0, ..CollisionOptions::default() };
+    let of_obstacle = |robot: &Mechanism, obstacle: &Geometry| -> Vec<String> {
+        let mut model = CollisionModel::new(robot, &options).unwrap();
+        let own = model.pairs().len();
+        model.add_obstacle("obstacle", obstacle, Pose::IDENTITY).unwrap();
+        (own..model.pairs().len()).map(|i| model.names(i)[0].to_owned()).collect()
+    };
+    let sphere = Geometry::Sphere { radius: 0.1 };
+    assert_eq!(of_obstacle(&robot(3.0), &sphere), ["upper", "fore", "tool"]);
+    let mut builder = Mechanism::builder("a board that turns");
+    builder.link(Link::named("base"));
+    let board = Collision { geometry: Geometry::HalfSpace, ..Collision::default() };
+    builder.link(Link { collisions: vec![board, ball(0.5)], ..Link::named("board") });
+    builder.joint(JointSpec::new("a", JointKind::Revolute, "base", "board"));
+    let board = builder.build().unwrap();
+    assert_eq!(of_obstacle(&board, &sphere), ["board", "board"]);
+    assert_eq!(of_obstacle(&board, &Geometry::HalfSpace), ["board"]);
+}

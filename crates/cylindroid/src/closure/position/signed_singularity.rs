@@ -174,4 +174,18 @@ mod tests {
         let wide = SignedSingularity::new(0..3, vec![0, 1, 0], &[at(1.0)]);
         assert!(!wide.is_signed());
     }
+
+    /// A block of some of the rows is that of these rows alone.
+    #[test]
+    fn rows_of_other_loops_do_not_count() {
+        let own = |x: f64| Matrix::from_rows(&[[1.0, 0.5], [2.0, 1.0 + x]]).unwrap();
+        let beside = |x: f64| {
+            let rows = [[3.0, 0.0, 7.0], [1.0, 0.5, -4.0], [2.0, 1.0 + x, 5.0], [0.0, 9.0, 1.0]];
+            Matrix::from_rows(&rows).unwrap()
+        };
+        let s = SignedSingularity::new(1..3, vec![0, 1], &[beside(1.0)]);
+        assert_eq!((s.block(&beside(0.2)), s.first_row(), s.rank), (own(0.2), 1, 2));
+        let value = |x: f64| s.value(&s.block(&beside(x)), &Svd::of(&own(x)));
+        assert!(value(0.1) > 0.0 && value(-0.1) < 0.0 && value(0.0).abs() < 1e-15);
+    }
 }

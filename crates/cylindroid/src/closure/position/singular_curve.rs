@@ -481,3 +481,20 @@ impl CurveTracer {
         Ok((a, b))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Vec3, on_segment};
+
+    #[test]
+    fn points_on_a_segment() {
+        let to = [Vec3::X * 3.0, Vec3::Z * 4.0];
+        let is_on = |x: f64, z: f64, y: f64| {
+            on_segment(&[Vec3::new(x, y, 0.0), Vec3::Z * z], &[Vec3::ZERO; 2], &to)
+        };
+        // Its length is 5: what is nearer than 0.5 lies on it.
+        assert!(is_on(0.0, 0.0, 0.0) && is_on(3.0, 4.0, 0.0) && is_on(1.5, 2.0, 0.45));
+        assert!(!is_on(1.5, 2.0, 0.55) && !is_on(3.4, 4.4, 0.0) && !is_on(-0.4, -0.4, 0.0));
+        assert!(is_on(3.2, 4.3, 0.0) && is_on(-0.2, -0.3, 0.0) && !is_on(0.0, 2.0, 0.0));
+    }
+}

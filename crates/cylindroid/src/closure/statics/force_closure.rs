@@ -381,3 +381,20 @@ fn across(n: Vec3) -> Vec3 {
 fn refuse(option: &'static str, value: f64, reason: &str) -> Error {
     Error::InvalidOption { option, value: value.to_string(), reason: reason.to_owned() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Also of normals along the axes of the frame, both ways.
+    #[test]
+    fn directions_across_a_normal() {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+        let along = axes.iter().flat_map(|axis| [*axis, -*axis]);
+        let tilted = [Vec3::new(0.8, 0.0, 0.6), Vec3::new(-0.48, 0.64, -0.6)];
+        for n in along.chain(tilted) {
+            let t = across(n);
+            assert!(t.dot(n).abs() < 1e-15 && (t.norm() - 1.0).abs() < 1e-15, "{n:?}: {t:?}");
+        }
+    }
+}

@@ -230,3 +230,13 @@ fn directions_are_kept_or_least_squares_taken() {
         assert!((servo.reports()[0].scale - 1.0).abs() < 1e-4);
     }
 }
+
+/// Before its first step a servo moves, and nothing is left out.
+#[test]
+fn reports_before_the_first_step() {
+    let servo = of_tasks(&table([limits(5.0); 2]), vec![posture(&[0.1, 0.0])]);
+    let report = &servo.reports()[0];
+    assert_eq!((report.status, report.stopped_by), (Status::Moving, None));
+    assert_eq!((report.scale, report.left_out), (1.0, 0.0));
+    assert_eq!((report.position_error, report.orientation_error), (0.0, 0.0));
+}
