@@ -9,9 +9,11 @@ use super::*;
 
 /// What pushes outwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Push {
+pub(super) enum Push {
     /// A target twice the length of the mechanism away.
     Target,
+    /// A target at this place.
+    TargetAt(Vec3),
     /// A target that moves away with a tenth of that length per second.
     MovingTarget,
     /// A twist of this speed.
@@ -26,16 +28,18 @@ impl Push {
 
 /// A motion to the edge of the workspace; lengths are over that of the mechanism.
 #[derive(Debug)]
-struct ToTheEdge {
-    /// Time until the stall is named for good (s).
-    time: f64,
+pub(super) struct ToTheEdge {
+    /// Time until the stall is named, or the target reached, for good (s).
+    pub(super) time: f64,
     /// Motion backwards.
-    back: f64,
+    pub(super) back: f64,
     /// Reversals of more than 1e-4.
     turns: usize,
-    stall: Option<Stall>,
-    /// Where it began, and where it is when the stall is named for good.
+    pub(super) stall: Option<Stall>,
+    /// Where it began, and where it is at this time.
     ends: [Vec<f64>; 2],
+    /// Where the end effector is at last.
+    pub(super) place: Vec3,
 }
 
 impl ToTheEdge {
@@ -74,45 +78,59 @@ fn to_the_edge(
     dt: f64,
     seconds: f64,
 ) -> ToTheEdge {
-    let mut servo = servo(robot, |o| {
-        o.dt = dt;
-        let planar = o.task == Task::PLANAR;
-        let components = [true, true, !planar, false, false, false];
-        o.task = Task { components, ..Task::POSE };
-    });
+    let planar = servo(robot, |_| ()).options().task == Task::PLANAR;
+    let components = [true, true, !planar, false, false, false];
+    let task = Task { components, ..Task::POSE };
+    pushed((robot, start, task), push, direction, dt, seconds)
+}
+
+/// The same for any task, until a verdict has held for a second.
+pub(super) fn pushed(
+    (robot, start, task): (&Mechanism, &[f64], Task),
+    push: Push,
+    direction: Vec3,
+    dt: f64,
+    seconds: f64,
+) -> ToTheEdge {
+    let mut servo = servo(robot, |o| (o.dt, o.task) = (dt, task));
     let end_effector = servo.options().end_effector;
     let mut q =
         if robot.is_closed() { assemble(robot, start, &[]).unwrap().q } else { start.into() };
     let home = robot.state(&q).unwrap().pose(end_effector).unwrap();
     let (reach, speed) = (robot.reach(), direction * (0.1 * robot.reach()));
     let ends = [q.clone(), q.clone()];
-    let mut motion = ToTheEdge { time: f64::INFINITY, back: 0.0, turns: 0, stall: None, ends };
+    let (time, place) = (f64::INFINITY, home.translation);
+    let mut motion = ToTheEdge { time, back: 0.0, turns: 0, stall: None, ends, place };
     let (mut last, mut extreme, mut forwards) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 1.0);
     for i in 0..(seconds / dt) as usize {
         let time = i as f64 * dt;
         let twist = Twist { linear: speed, angular: Vec3::ZERO };
-        let beyond = |way: Vec3| Pose { translation: home.translation + way, ..home };
-        let (pose, error, is_stalled) = if push == Push::Twist {
+        let at = |place: Vec3| Pose { translation: place, ..home };
+        let (pose, error, status) = if push == Push::Twist {
             let step = servo.step_twist(&q, Some(twist)).unwrap();
-            (step.step.pose, 0.0, step.status == TwistStatus::Stalled)
+            let is_stalled = step.status == TwistStatus::Stalled;
+            (step.step.pose, 0.0, if is_stalled { Status::Stalled } else { Status::Moving })
         } else {
             let target = match push {
-                Push::Target => beyond(direction * (2.0 * reach)).into(),
-                Push::MovingTarget => beyond(speed * time).into(),
-                _ => {
+                Push::Target => at(home.translation + direction * (2.0 * reach)).into(),
+                Push::TargetAt(place) => at(place).into(),
+                Push::MovingTarget => at(home.translation + speed * time).into(),
+                Push::Twist | Push::FedForward => {
                     let pose = robot.state(&q).unwrap().pose(end_effector).unwrap();
                     Target { pose, feed_forward: twist }
                 }
             };
             let step = servo.step(&q, target).unwrap();
-            (step.pose, step.position_error, step.status == Status::Stalled)
+            (step.pose, step.position_error, step.status)
         };
         servo.advance(&mut q);
-        let way = match push {
-            Push::Target => -error / reach,
-            _ => (pose.translation - home.translation).dot(direction) / reach,
+        let is_fixed = matches!(push, Push::Target | Push::TargetAt(_));
+        let way = match is_fixed {
+            true => -error / reach,
+            false => (pose.translation - home.translation).dot(direction) / reach,
         };
         motion.back += if last.is_finite() { (last - way).max(0.0) } else { 0.0 };
+        motion.place = pose.translation;
         last = way;
         if i == 0 || forwards * (way - extreme) > 0.0 {
             extreme = way;
@@ -120,10 +138,15 @@ fn to_the_edge(
             (extreme, forwards) = (way, -forwards);
             motion.turns += 1;
         }
-        if !is_stalled {
+        let is_verdict = match is_fixed {
+            true => status != Status::Moving,
+            false => status == Status::Stalled,
+        };
+        if !is_verdict {
             (motion.time, motion.stall) = (f64::INFINITY, None);
-        } else if motion.stall.is_none() {
-            (motion.time, motion.stall) = (time, Some(servo.stall()));
+        } else if motion.time.is_infinite() {
+            motion.time = time;
+            motion.stall = (status == Status::Stalled).then(|| servo.stall());
             motion.ends[1].clone_from(&q);
         } else if time > motion.time + 1.0 {
             break;
