@@ -36,6 +36,10 @@ pub(crate) fn fetch() -> Result<PathBuf> {
     let wanted = fs::read_to_string(root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
     let stamp = folder.join("requirements-test.txt");
     let meshes = robots.join("xarm_description/meshes");
+    fs::create_dir_all(&folder)?;
+    // Two tasks at once would take the wheels away from each other.
+    let lock = fs::File::create(folder.join("lock"))?;
+    lock.lock()?;
     if robots.is_dir()
         && meshes.is_dir()
         && fs::read_to_string(&stamp).is_ok_and(|got| got == wanted)

@@ -209,6 +209,37 @@ fn large_files_do_not_print_without_end() {
     assert!(out.stdout.len() < 1_000_000, "{} bytes", out.stdout.len());
 }
 
+/// Ten thousand joints are an ordinary robot, within half a gigabyte.
+#[test]
+#[cfg(unix)]
+fn ten_thousand_joints_are_a_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.urdf");
+    let joint = |i: usize| {
+        let child = i + 1;
+        format!(
+            "<link name='l{child}'/><joint name='j{i}' type='revolute'><parent link='l{i}'/>\
+             <child link='l{child}'/><origin xyz='0.001 0 0'/><axis xyz='0 0 1'/>\
+             <limit lower='-1' upper='1' velocity='1' effort='1'/></joint>"
+        )
+    };
+    let joints: String = (0..10_000).map(joint).collect();
+    std::fs::write(&path, format!("<robot name='long'><link name='l0'/>{joints}</robot>")).unwrap();
+    let commands =
+        [("info", "j9999"), ("fk", "10, 0, 0"), ("jacobian", "j9999"), ("screws", "j9999")];
+    for (command, end) in commands {
+        let limited = "ulimit -v 500000; exec \"$0\" \"$@\"";
+        let output = Command::new("sh")
+            .args(["-c", limited, env!("CARGO_BIN_EXE_cylindroid"), command])
+            .arg(&path)
+            .output()
+            .unwrap();
+        let [out, err] = [output.stdout, output.stderr].map(|x| String::from_utf8(x).unwrap());
+        assert!(output.status.success(), "{command}: {err}");
+        assert!(out.contains(end), "{command}: {}", out.chars().take(500).collect::<String>());
+    }
+}
+
 /// Without joints, every command gives an answer or one error.
 #[test]
 fn zero_joints_are_a_size() {
