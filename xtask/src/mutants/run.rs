@@ -13,23 +13,9 @@ use super::equivalent::Equivalent;
 use super::mutant::{BUILD, Mutant};
 use crate::shell::{cargo, root};
 
-/// Test programs of the library and of the command line, which prints what the library computes;
-/// `cylindroid` are the tests in the sources of the library.
-const PROGRAMS: [&str; 10] = [
-    "it",
-    "motion",
-    "collision",
-    "formats",
-    "sweep",
-    "map",
-    "sizes",
-    "limits",
-    "cylindroid",
-    "cli",
-];
-
-/// Tests that start the program again in other forms, wait for the clock, or draw new input each time.
-const LEFT_OUT: [&str; 3] = ["simd::", "view::", "fuzz::"];
+/// Test programs of the library; `lib` are the tests in its sources.
+const PROGRAMS: [&str; 9] =
+    ["it", "motion", "collision", "formats", "sweep", "map", "sizes", "limits", "lib"];
 
 /// Time for tests with a mutant, beside five times that without one.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -88,24 +74,16 @@ impl<'a> Tests<'a> {
 
     fn names(&self, program: usize) -> Result<Vec<String>> {
         let mut command = Command::new(&self.programs[program]);
-        command.args(["--list", "--format", "terse"]).current_dir(self.package(program));
+        command.args(["--list", "--format", "terse"]).current_dir(self.library);
         let output = String::from_utf8(command.output()?.stdout)?;
         let names = output.lines().filter_map(|line| line.strip_suffix(": test"));
-        let is_left_out = |name: &&str| LEFT_OUT.iter().any(|module| name.starts_with(module));
-        Ok(names.filter(|name| !is_left_out(name)).map(str::to_owned).collect())
-    }
-
-    /// The folder of a program's package, in which cargo runs it.
-    fn package(&self, program: usize) -> PathBuf {
-        match PROGRAMS[program] {
-            "cli" => self.library.with_file_name("cylindroid-cli"),
-            _ => self.library.to_owned(),
-        }
+        // They start the program again in other forms.
+        Ok(names.filter(|name| !name.starts_with("simd::")).map(str::to_owned).collect())
     }
 
     fn command(&self, program: usize, names: &[&str]) -> Command {
         let mut command = Command::new(&self.programs[program]);
-        command.arg("--exact").args(names).current_dir(self.package(program));
+        command.arg("--exact").args(names).current_dir(self.library);
         command.env("CYLINDROID_TEST_ROBOTS", self.robots).env("RUST_BACKTRACE", "0");
         command
     }
@@ -149,8 +127,6 @@ impl<'a> Tests<'a> {
 
 /// The first test of a run that fails, or why the program ended; `None` if all pass.
 fn first_failure(mut command: Command, limit: Duration) -> Result<Option<String>> {
-    #[cfg(unix)]
-    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn()?;
     let output = child.stdout.take().context("the output of the tests")?;
     let (send, lines) = mpsc::channel();
@@ -173,12 +149,6 @@ fn first_failure(mut command: Command, limit: Duration) -> Result<Option<String>
         }
     };
     drop(lines);
-    // Also the programs that the tests started, one of which may have no end.
-    #[cfg(unix)]
-    Command::new("kill")
-        .args(["-KILL", "--", &format!("-{}", child.id())])
-        .stderr(Stdio::null())
-        .status()?;
     let _ = child.kill();
     child.wait()?;
     let _ = reader.join();
@@ -230,10 +200,12 @@ fn in_turn(n: usize) -> Vec<usize> {
 
 /// Builds the test programs of the copy.
 fn programs(copy: &Path) -> Result<Vec<PathBuf>> {
-    let mut arguments = vec!["test", "--package", "cylindroid", "--package", "cylindroid-cli"];
-    arguments.extend(["--no-run", "--lib"]);
-    for name in PROGRAMS.iter().filter(|name| **name != "cylindroid") {
-        arguments.extend(["--test", name]);
+    let mut arguments = vec!["test", "--package", "cylindroid", "--no-run"];
+    for name in PROGRAMS {
+        match name {
+            "lib" => arguments.push("--lib"),
+            name => arguments.extend(["--test", name]),
+        }
     }
     let output =
         cargo(&arguments).current_dir(copy).env("CARGO_TARGET_DIR", root().join(BUILD)).output()?;
@@ -241,20 +213,13 @@ fn programs(copy: &Path) -> Result<Vec<PathBuf>> {
     if !output.status.success() {
         bail!("the tests of the copy do not build:\n{text}");
     }
-    // Executable tests/it/main.rs (FOLDER/deps/it-HASH)
-    let built = text.lines().filter(|line| line.contains("Executable"));
-    let built: Vec<&str> =
-        built.filter_map(|line| line.rsplit('(').next()?.strip_suffix(')')).collect();
-    let is_of = |path: &str, name: &str| {
-        let file = Path::new(path).file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
-        file.rsplit_once('-').is_some_and(|(stem, _)| stem == name)
-    };
-    PROGRAMS
-        .iter()
-        .map(|name| {
-            let path = built.iter().find(|path| is_of(path, name));
-            let path = Path::new(path.with_context(|| format!("no program of {name}"))?);
-            Ok(if path.is_absolute() { path.to_owned() } else { copy.join(path) })
-        })
-        .collect()
+    let mut found = Vec::new();
+    for name in PROGRAMS {
+        let source = if name == "lib" { "src/lib.rs".to_owned() } else { format!("tests/{name}/") };
+        let line = text.lines().find(|l| l.contains("Executable") && l.contains(&source));
+        let program = line.and_then(|line| line.rsplit('(').next()?.strip_suffix(')'));
+        let program = Path::new(program.with_context(|| format!("no program of {source}"))?);
+        found.push(if program.is_absolute() { program.to_owned() } else { copy.join(program) });
+    }
+    Ok(found)
 }
