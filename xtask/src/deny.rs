@@ -1,12 +1,12 @@
 //! Licences, duplicates, sources and advisories of dependencies, by cargo-deny and `deny.toml`;
-//! licences of npm and Python packages by `licences.py`.
+//! licences of npm and Python packages by `licences.py`, their advisories by npm and pip-audit.
 
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
 use crate::python;
-use crate::shell::{captured, cargo, run};
+use crate::shell::{captured, cargo, root, run};
 use crate::tools::tool;
 
 const VERSION: &str = "0.20.2";
@@ -29,13 +29,49 @@ pub(crate) fn check() -> Result<()> {
     run(Command::new(python::for_tests()?).arg("xtask/licences.py").args(LOCK_FILES))
 }
 
-/// `--advisories` alone.
+const PIP_AUDIT: &str = "pip-audit==2.10.1";
+
+/// The check, or `--advisories` alone.
 pub(crate) fn task(argument: Option<&str>) -> Result<()> {
     match argument {
         None => check(),
-        Some("--advisories") => with(&["advisories"]),
+        Some("--advisories") => advisories(),
         Some(other) => bail!("deny has no option '{other}', only --advisories"),
     }
+}
+
+/// Known weaknesses of crates, npm packages and the Python packages of the tests; all are asked, whichever
+/// fail.
+fn advisories() -> Result<()> {
+    let npm = |lock: &str| {
+        let folder = root().join(lock);
+        let mut audit = Command::new("npm");
+        audit.args(["audit", "--package-lock-only", "--prefix"]).arg(folder.with_file_name(""));
+        run(&mut audit)
+    };
+    let answers = [
+        ("crates", with(&["advisories"])),
+        ("npm packages of the viewer", npm(LOCK_FILES[0])),
+        ("npm packages of the book", npm(LOCK_FILES[1])),
+        ("Python packages", audit_python()),
+    ];
+    let failed: Vec<String> = answers
+        .into_iter()
+        .filter_map(|(what, answer)| Some(format!("{what}: {:#}", answer.err()?)))
+        .collect();
+    if !failed.is_empty() {
+        bail!("weaknesses, or lists of them that cannot be read:\n  {}", failed.join("\n  "));
+    }
+    Ok(())
+}
+
+/// Those that the tests install, with all that they depend on.
+fn audit_python() -> Result<()> {
+    let own = python::environment(&root().join("target/tools/pip-audit"))?;
+    python::pip(&own, &[PIP_AUDIT]).context("pip needs a way to PyPI")?;
+    let place = "import sysconfig; print(sysconfig.get_path('purelib'))";
+    let packages = captured(Command::new(python::for_tests()?).args(["-c", place]))?;
+    run(Command::new(own).args(["-m", "pip_audit", "--skip-editable", "--path"]).arg(packages))
 }
 
 fn with(checks: &[&str]) -> Result<()> {

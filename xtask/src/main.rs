@@ -71,7 +71,8 @@ cargo xtask <task>
             release build for so long, with rate, jitter and latency
   deny      checks licences, duplicates and sources of dependencies with cargo-deny, which it
             installs (needs crates.io), and licences of npm and Python packages (needs PyPI);
-            --advisories reads those of RustSec (needs github.com)
+            --advisories reads those of RustSec, npm and PyPI (needs github.com, the npm registry
+            and pypi.org)
   simd      runs the tests of laws once for each form of the kernels that the processor has beside
             its best (CYLINDROID_SIMD); test runs those that call the kernels
   platforms
