@@ -92,9 +92,9 @@ fn meshes_are_hulls_or_capsules() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("block.obj");
     fs::write(&path, block()).unwrap();
-    let scale = Vec3::new(1.0, 0.5, -1.0);
+    let scale = Vec3::new(0.8, 0.4, -1.5);
     let mesh = Geometry::Mesh { uri: "block.obj".to_owned(), path: Some(path), scale };
-    let same = Geometry::Box { size: Vec3::new(2.0, 2.0, 6.0) };
+    let same = Geometry::Box { size: Vec3::new(1.6, 1.6, 9.0) };
     let ball = Geometry::Sphere { radius: 0.5 };
     for at in [Vec3::new(3.0, 0.2, 0.1), Vec3::new(2.0, 3.0, 5.0), Vec3::new(0.1, 0.2, 0.3)] {
         let pose = Pose::from_translation(at);
@@ -113,8 +113,8 @@ fn meshes_are_hulls_or_capsules() {
     model.add_obstacle("ball", &ball, Pose::from_translation(Vec3::X * 4.0)).unwrap();
     let (state, mut near) = (slide.state(&[0.0]).unwrap(), Vec::new());
     model.near(&state, 10.0, &mut near).unwrap();
-    // Radius sqrt 2 around the edges along z.
-    let expected = 4.0 - 0.5 - 2.0_f64.sqrt();
+    // Radius 0.8 sqrt 2 around the edges along z.
+    let expected = 4.0 - 0.5 - 0.8 * 2.0_f64.sqrt();
     assert!((near[0].distance - expected).abs() < 1e-2, "{} {expected}", near[0].distance);
 }
 

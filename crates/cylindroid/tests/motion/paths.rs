@@ -251,6 +251,9 @@ fn points_without_a_circle_are_refused_with_advice() {
         (b.translation, b),
         (b.translation, a),
         (Vec3::ZERO, a),
+        (b.translation + Vec3::X * 1e-7, b),
+        (Vec3::Y * 1e-7, b),
+        (b.translation, Pose::from_translation(Vec3::Z * 1e-7)),
     ] {
         let message = CartesianPath::circle(a, via, to).unwrap_err().to_string();
         assert!(message.contains("no circle") && message.contains("use a line"), "{message}");

@@ -98,6 +98,7 @@ fn joints_in_line_spin_idly() {
         })
         .unwrap()
     };
+    assert_eq!(leg(0.5).length(), 1.0, "columns are as they are given");
     let generic = pose(&leg(0.5)).2;
     let (motions, relation, now) = pose(&leg(0.0));
     assert_eq!((generic.idle, now.idle), (0, 1));

@@ -28,6 +28,8 @@ fn lines() {
                 case["involution_gram_criterion"].as_bool().unwrap(),
                 "{name}"
             );
+            let existence = found.system.existence(0.0);
+            assert_eq!((found.margin, found.threshold), (existence.margin, existence.threshold));
             let radical = case["radical_dim"].as_u64().unwrap() as usize;
             assert_eq!(found.null_twists.len(), radical, "{name}");
             for z in &found.null_twists {
