@@ -40,6 +40,8 @@ pub(super) struct ToTheEdge {
     ends: [Vec<f64>; 2],
     /// Where the end effector is at last.
     pub(super) place: Vec3,
+    /// The largest speed of a joint at last [rad/s or m/s].
+    pub(super) speed: f64,
 }
 
 impl ToTheEdge {
@@ -81,26 +83,25 @@ fn to_the_edge(
     let planar = servo(robot, |_| ()).options().task == Task::PLANAR;
     let components = [true, true, !planar, false, false, false];
     let task = Task { components, ..Task::POSE };
-    pushed((robot, start, task), push, direction, dt, seconds)
+    pushed((&mut servo(robot, |o| (o.dt, o.task) = (dt, task)), start), push, direction, seconds)
 }
 
-/// The same for any task, until a verdict has held for a second.
+/// The same by any servo, until a verdict has held for a second.
 pub(super) fn pushed(
-    (robot, start, task): (&Mechanism, &[f64], Task),
+    (servo, start): (&mut Servo, &[f64]),
     push: Push,
     direction: Vec3,
-    dt: f64,
     seconds: f64,
 ) -> ToTheEdge {
-    let mut servo = servo(robot, |o| (o.dt, o.task) = (dt, task));
-    let end_effector = servo.options().end_effector;
+    let robot = &servo.mechanism().clone();
+    let ServoOptions { dt, end_effector, .. } = *servo.options();
     let mut q =
         if robot.is_closed() { assemble(robot, start, &[]).unwrap().q } else { start.into() };
     let home = robot.state(&q).unwrap().pose(end_effector).unwrap();
     let (reach, speed) = (robot.reach(), direction * (0.1 * robot.reach()));
     let ends = [q.clone(), q.clone()];
     let (time, place) = (f64::INFINITY, home.translation);
-    let mut motion = ToTheEdge { time, back: 0.0, turns: 0, stall: None, ends, place };
+    let mut motion = ToTheEdge { time, back: 0.0, turns: 0, stall: None, ends, place, speed: 0.0 };
     let (mut last, mut extreme, mut forwards) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 1.0);
     for i in 0..(seconds / dt) as usize {
         let time = i as f64 * dt;
@@ -131,6 +132,8 @@ pub(super) fn pushed(
         };
         motion.back += if last.is_finite() { (last - way).max(0.0) } else { 0.0 };
         motion.place = pose.translation;
+        let speeds = servo.joint_velocities().iter().map(|rate| rate.abs());
+        motion.speed = speeds.fold(0.0, f64::max);
         last = way;
         if i == 0 || forwards * (way - extreme) > 0.0 {
             extreme = way;

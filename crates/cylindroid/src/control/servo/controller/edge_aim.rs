@@ -56,7 +56,10 @@ impl Servo {
         // Closed chains swing at the edge without acceleration limits too. Where they only track a
         // target they pay for no search.
         let is_close = !is_fed_forward && norm(&self.projected_error) <= TRACKED;
-        let is_tracked = is_close && (is_coupled || !is_near && !is_out_of_reach);
+        // A target beyond reach stays so where the tool comes near to it.
+        let is_the_end = self.elsewhere.as_ref().is_some_and(|elsewhere| elsewhere.is_the_end());
+        let is_beyond = is_out_of_reach || is_the_end;
+        let is_tracked = is_close && (is_coupled || !is_near && !is_beyond);
         if let Some(elsewhere) = self.elsewhere.as_mut().filter(|_| is_tracked) {
             elsewhere.note_in_reach();
         }
