@@ -34,6 +34,10 @@ const WINDING: f64 = 0.3;
 /// where the gradient ceases, a longer one leads to and fro (found by experiment with a panda).
 const ASIDE: f64 = 0.5;
 
+/// Velocities below this share of those of the way come to rest where they lead away from it [-]: turned to
+/// the task, joints were off the way again and crept, a step on and a step back.
+const NEARLY_AT_REST: f64 = 0.05;
+
 /// The way to the nearest pose.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::control) struct KnownWay<'a> {
@@ -180,16 +184,17 @@ impl Curved {
 
     /// Moves `set` to the largest share of the velocities within the bounds: no joint leaves the path while
     /// others accelerate. Where the last ones are off the path, to those nearest to their part along it,
-    /// and where they lead away from it, as near to the task as they can turn.
+    /// and where they lead away from it, as near to the task as they can turn, or to rest if they are small.
     fn move_together(&mut self, set: &mut ActiveSet, last: &[f64]) {
         let Level { rows, target, .. } = &mut self.level;
         let within = set.inequalities.share_within(&self.rates);
         let square = dot(&self.rates, &self.rates).max(f64::MIN_POSITIVE);
         let along = dot(&self.rates, last) / square;
-        if within.is_none() && along < 0.0 {
+        let is_slow = dot(last, last) < NEARLY_AT_REST * NEARLY_AT_REST * square;
+        if within.is_none() && along < 0.0 && !is_slow {
             rows.mul_vec_into(&self.rates, target);
         } else {
-            let share = within.unwrap_or(along.min(1.0));
+            let share = within.unwrap_or(along.clamp(0.0, 1.0));
             rows.as_mut_slice().fill(0.0);
             for (j, (x, rate)) in target.iter_mut().zip(&self.rates).enumerate() {
                 rows[(j, j)] = 1.0;
