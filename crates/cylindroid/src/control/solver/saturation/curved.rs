@@ -22,6 +22,7 @@ use super::problem::{FED_FORWARD, Problem};
 use crate::control::solver::active_set::{ActiveSet, Level, Precision};
 use crate::control::solver::bounds::LimitKind;
 use crate::linalg::{Matrix, dot, norm};
+use crate::scalar::clamp;
 
 /// Joint velocities below this share of all are roundings of zero [-].
 const ROUNDING: f64 = 1e-9;
@@ -194,7 +195,7 @@ impl Curved {
         if within.is_none() && along < 0.0 && !is_slow {
             rows.mul_vec_into(&self.rates, target);
         } else {
-            let share = within.unwrap_or(along.clamp(0.0, 1.0));
+            let share = within.unwrap_or(clamp(along, 0.0, 1.0));
             rows.as_mut_slice().fill(0.0);
             for (j, (x, rate)) in target.iter_mut().zip(&self.rates).enumerate() {
                 rows[(j, j)] = 1.0;
