@@ -232,6 +232,8 @@ fn ten_thousand_joints_are_a_size() {
         let output = Command::new("sh")
             .args(["-c", limited, env!("CARGO_BIN_EXE_cylindroid"), command])
             .arg(&path)
+            // Each thread reserves addresses.
+            .env("RAYON_NUM_THREADS", "2")
             .output()
             .unwrap();
         let [out, err] = [output.stdout, output.stderr].map(|x| String::from_utf8(x).unwrap());
