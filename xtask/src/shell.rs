@@ -11,13 +11,12 @@ pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_path_buf).unwrap_or_default()
 }
 
-/// Runs a command in the workspace, its output shown.
+/// Runs a command in the workspace or in its own folder, its output shown.
 ///
 /// # Errors
 /// A command that cannot be started or fails.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
-    let status = command
-        .current_dir(root())
+    let status = in_workspace(command)
         .status()
         .with_context(|| format!("cannot start {}", command.get_program().to_string_lossy()))?;
     if !status.success() {
@@ -26,13 +25,20 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
+/// The command, in the workspace if it has no folder of its own.
+fn in_workspace(command: &mut Command) -> &mut Command {
+    if command.get_current_dir().is_none() {
+        command.current_dir(root());
+    }
+    command
+}
+
 /// What a command prints.
 ///
 /// # Errors
 /// A command that cannot be started or fails.
 pub(crate) fn captured(command: &mut Command) -> Result<String> {
-    let output = command
-        .current_dir(root())
+    let output = in_workspace(command)
         .output()
         .with_context(|| format!("cannot start {}", command.get_program().to_string_lossy()))?;
     if !output.status.success() {
