@@ -11,6 +11,7 @@ use crate::shell::{captured, cargo, root, run};
 use crate::tools::tool;
 
 const VERSION: &str = "0.20.2";
+const PIP_AUDIT: &str = "pip-audit==2.10.1";
 
 /// The packages of the viewer and of the book.
 const LOCK_FILES: [&str; 2] = ["viewer/package-lock.json", "xtask/book/package-lock.json"];
@@ -30,8 +31,6 @@ pub(crate) fn check() -> Result<()> {
     run(Command::new(python::for_tests()?).arg("xtask/licences.py").args(LOCK_FILES))
 }
 
-const PIP_AUDIT: &str = "pip-audit==2.10.1";
-
 /// The check, or `--advisories` alone.
 pub(crate) fn task(argument: Option<&str>) -> Result<()> {
     match argument {
@@ -41,8 +40,8 @@ pub(crate) fn task(argument: Option<&str>) -> Result<()> {
     }
 }
 
-/// Known weaknesses of crates, npm packages and the Python packages of the tests; all are asked, whichever
-/// fail.
+/// Known vulnerabilities of crates, npm packages and the Python packages of the tests; all are asked,
+/// whichever fail.
 fn advisories() -> Result<()> {
     let npm = |lock: &str| {
         let folder = root().join(lock);
@@ -61,7 +60,7 @@ fn advisories() -> Result<()> {
         .filter_map(|(what, answer)| Some(format!("{what}: {:#}", answer.err()?)))
         .collect();
     if !failed.is_empty() {
-        bail!("weaknesses, or lists of them that cannot be read:\n  {}", failed.join("\n  "));
+        bail!("vulnerabilities, or lists of them that cannot be read:\n  {}", failed.join("\n  "));
     }
     Ok(())
 }

@@ -60,7 +60,7 @@ fn wide_limits_stand_for_none() {
 /// Joints that may turn several times: the nearest configuration is that beside the preferred one, also
 /// turns away from zero.
 #[test]
-fn the_nearest_configuration_is_turns_away() {
+fn the_nearest_configuration_may_be_turns_away_from_zero() {
     let text = format!("name = \"turns\"\n{}", arm("ground", |_| [-10.0, 10.0]));
     let robot = cylindroid::load_text(&text, Path::new("turns.toml")).unwrap();
     let mut random = Random(5);

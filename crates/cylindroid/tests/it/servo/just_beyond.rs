@@ -55,8 +55,8 @@ fn targets_just_beyond_reach_are_approached_once() {
     }
 }
 
-/// Near the edge a target just beyond it is near enough to be tracked. Joints with self-motions took it for one in
-/// reach and out of it by turns, and rattled with up to 0.4 rad/s for ever.
+/// Near the edge a target just beyond it is near enough to be tracked. The servo took it for one in reach
+/// and out of it by turns, and joints with self-motions chattered with up to 0.4 rad/s for ever.
 #[test]
 fn joints_rest_before_targets_just_beyond_reach() {
     for name in ["iiwa14", "panda"] {
@@ -73,8 +73,8 @@ fn joints_rest_before_targets_just_beyond_reach() {
     }
 }
 
-/// With short steps the velocities of weak joints that had just begun to move were off the way by turns, and the
-/// joints crept with 0.01 rad/s: 0.6 m were left after 40 s.
+/// With short steps the velocities of weak joints that had just begun to move led away from the way in
+/// every second step, and the joints crept with 0.01 rad/s: 0.6 m were left after 40 s.
 #[test]
 fn weak_joints_begin_their_way_with_short_steps() {
     let (_, target) = targets_beyond("panda", Task::POSITION, Vec3::Z).nth(1).unwrap();
@@ -109,8 +109,8 @@ fn targets_that_leave_reach_are_not_swung_after() {
 const ARMS: [&str; 4] = ["ur5e", "puma560", "iiwa14", "panda"];
 const TASKS: [(&str, Task); 2] = [("position", Task::POSITION), ("pose", Task::POSE)];
 
-/// Counts motions that move back by more than a thousandth of reach and those without a verdict in time, with
-/// the most that one moves back, and the longest one.
+/// Counts motions that move back by more than a thousandth of reach and those without a verdict in time,
+/// with the most that one moves back, and the longest one.
 #[derive(Debug, Default)]
 struct Counts {
     motions: usize,
@@ -121,8 +121,8 @@ struct Counts {
 }
 
 impl Counts {
-    /// Of the arm at several accelerations, in every direction, by these servos; 12 s for fixed targets and 40 s
-    /// for targets that move away.
+    /// Of the arm at several accelerations, in every direction, by these servos; 12 s for fixed targets and
+    /// 40 s for targets that move away.
     fn of(name: &str, task: Task, moves: bool, servo: impl Fn(&Mechanism) -> Servo) -> Self {
         let mut counts = Self::default();
         for direction in DIRECTIONS {
