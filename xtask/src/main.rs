@@ -75,6 +75,8 @@ cargo xtask <task>
             and pypi.org)
   simd      runs the tests of laws once for each form of the kernels that the processor has beside
             its best (CYLINDROID_SIMD); test runs those that call the kernels
+  record    writes the results of random cases into crates/cylindroid/tests/data/recorded: after a
+            change that is meant to change them
   platforms
             checks the types of the library and of all programs for Windows, macOS and Linux on ARM
             (needs rustup and its server)
@@ -149,6 +151,7 @@ fn run() -> Result<()> {
         Some("ros2") => ros2::task(std::env::args().nth(2).as_deref()),
         Some("deny") => deny::task(std::env::args().nth(2).as_deref()),
         Some("simd") => models::fetch().and_then(|robots| steps::simd(&robots)),
+        Some("record") => steps::record(),
         Some("platforms") => steps::platforms(),
         Some("limits") => {
             let arguments: Vec<String> = std::env::args().skip(2).collect();

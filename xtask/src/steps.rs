@@ -113,6 +113,16 @@ fn in_all_forms(robots: &Path, chosen: &[&str]) -> Result<()> {
     Ok(())
 }
 
+/// Writes the records of results (`tests/recorded`), and cuts them where results differ without
+/// registers.
+pub(crate) fn record() -> Result<()> {
+    for (form, purpose) in [("", "write"), ("scalar", "shorten")] {
+        let tests = ["test", "--quiet", "--workspace", "--test", "recorded"];
+        run(cargo(&tests).env("CYLINDROID_SIMD", form).env("CYLINDROID_RECORD", purpose))?;
+    }
+    Ok(())
+}
+
 /// Systems and processors that the code is checked for besides Linux on x86-64.
 const PLATFORMS: [&str; 3] =
     ["x86_64-pc-windows-gnu", "aarch64-apple-darwin", "aarch64-unknown-linux-gnu"];

@@ -14,8 +14,8 @@ use super::mutant::{BUILD, Mutant};
 use crate::shell::{cargo, root};
 
 /// Test programs of the library; `lib` are the tests in its sources.
-const PROGRAMS: [&str; 9] =
-    ["it", "motion", "collision", "formats", "sweep", "map", "sizes", "limits", "lib"];
+const PROGRAMS: [&str; 10] =
+    ["recorded", "it", "motion", "collision", "formats", "sweep", "map", "sizes", "limits", "lib"];
 
 /// Time for tests with a mutant, beside five times that without one.
 const PATIENCE: Duration = Duration::from_secs(10);

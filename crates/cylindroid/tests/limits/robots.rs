@@ -14,15 +14,17 @@ use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 pub(crate) struct Random<'b> {
     state: u64,
     bytes: &'b [u8],
+    /// Numbers, from the lower end of their range on, are larger by this share.
+    pub(crate) nudge: f64,
 }
 
 impl<'b> Random<'b> {
     pub(crate) fn seeded(state: u64) -> Self {
-        Self { state, bytes: &[] }
+        Self { state, bytes: &[], nudge: 0.0 }
     }
 
     pub(crate) fn of_bytes(bytes: &'b [u8]) -> Self {
-        Self { state: 0, bytes }
+        Self { state: 0, bytes, nudge: 0.0 }
     }
 
     fn next(&mut self) -> u64 {
@@ -56,7 +58,7 @@ impl<'b> Random<'b> {
             Some(given) => (f64::from(given), f64::from(u16::MAX)),
             None => ((self.next() >> 11) as f64, (1_u64 << 53) as f64),
         };
-        lower + (upper - lower) * share / of
+        lower + (upper - lower) * share / of * (1.0 + self.nudge)
     }
 
     /// A power of ten.

@@ -95,7 +95,7 @@ pub(crate) fn check(bytes: &[u8]) {
     assert!(tally.violations.is_empty(), "{}: {:?}", kind.name(), tally.violations);
 }
 
-fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
+pub(crate) fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
     let mut tally = match kind {
         Kind::Catalogue | Kind::Closed => {
             let robot = of_catalogue(random, kind == Kind::Closed);
@@ -215,6 +215,7 @@ fn one_task(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
         }
         let before = q.clone();
         servo.advance(&mut q);
+        tally.note(step, &q);
         if closed {
             closed_step(robot, servo.joint_velocities(), &q, step, &mut tally);
             continue;
@@ -321,6 +322,7 @@ fn closed_servo(
             return tally;
         }
         servo.advance(q);
+        tally.note(step, q);
         closed_step(&robot, servo.joint_velocities(), q, step, &mut tally);
         if let Err(what) = look(step, q) {
             tally.violations.push(what);
@@ -357,6 +359,7 @@ fn task_servo(
         }
         let before = q.to_vec();
         servo.advance(q);
+        tally.note(step, q);
         let found = watch.step(&before, servo.joint_velocities(), q);
         match found.and_then(|at_limit| look(step, q).map(|()| at_limit)) {
             Ok(at_limit) => tally.at_limits += u64::from(at_limit),

@@ -21,6 +21,8 @@ pub(crate) struct Tally {
     pub(crate) nearest: Option<f64>,
     /// Steps that ended in an error.
     pub(crate) errors: u64,
+    /// Configurations of a round after 1, 2, 4, ... steps.
+    pub(crate) passed: Vec<f64>,
     pub(crate) violations: Vec<String>,
 }
 
@@ -28,6 +30,12 @@ impl Tally {
     pub(crate) fn panicked(seed: u64) -> Self {
         let violations = vec![format!("round {seed} panics")];
         Self { rounds: 1, violations, ..Self::default() }
+    }
+
+    pub(crate) fn note(&mut self, step: u64, q: &[f64]) {
+        if (step + 1).is_power_of_two() {
+            self.passed.extend_from_slice(q);
+        }
     }
 
     pub(crate) fn add(&mut self, other: Self) {
