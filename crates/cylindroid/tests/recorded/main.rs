@@ -8,6 +8,8 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a case that fails is named
 
+mod algebra;
+mod ik;
 mod record;
 #[path = "../limits/robots.rs"]
 #[allow(dead_code)] // used in part
