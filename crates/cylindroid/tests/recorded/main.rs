@@ -9,6 +9,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // a case that fails is named
 
 mod algebra;
+mod geometry;
 mod ik;
 mod record;
 #[path = "../limits/robots.rs"]
