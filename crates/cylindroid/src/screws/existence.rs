@@ -153,7 +153,8 @@ pub struct PitchChoice {
     pub pitch: Option<f64>,
     /// |P_h| there: 1 is an orthogonal projection.
     pub norm: f64,
-    /// |P_h| at pitches from `-range` to `range`: (h, norm), the norm infinite where there is none.
+    /// |P_h| at pitches up to ten lengths of the system, of both signs: (h, norm), the norm infinite where
+    /// there is none.
     pub curve: Vec<(f64, f64)>,
     /// |P_inf|; infinite where the limit does not exist.
     pub norm_at_infinity: f64,
@@ -168,6 +169,8 @@ const LARGEST_RATIO: f64 = 1e3;
 const PER_DECADE: i32 = 24;
 /// Decades below [`LARGEST_RATIO`].
 const DECADES: i32 = 6;
+/// Points at each end of the curve that are not returned: those beyond ten lengths.
+const BEYOND: usize = 2 * PER_DECADE as usize;
 
 impl ScrewSystem {
     /// Whether the projector P_h, and with it the hyperbolic pseudoinverses of all matrices that
@@ -251,7 +254,7 @@ impl ScrewSystem {
         let magnitude = |i: i32| {
             LARGEST_RATIO * length * 10_f64.powf(f64::from(i - steps) / f64::from(PER_DECADE))
         };
-        let mut curve: Vec<(f64, f64)> = (0..=steps)
+        let curve: Vec<(f64, f64)> = (0..=steps)
             .rev()
             .map(|i| -magnitude(i))
             .chain([0.0])
@@ -272,6 +275,7 @@ impl ScrewSystem {
         let Some(&best) = minima.first() else {
             let pitch = norm_at_infinity.is_finite().then_some(f64::INFINITY);
             let norm = norm_at_infinity;
+            let curve = curve[BEYOND..curve.len() - BEYOND].to_vec();
             return PitchChoice { pitch, norm, curve, norm_at_infinity, attained: true };
         };
         let (mut pitch, mut smallest) = curve[best];
@@ -307,7 +311,7 @@ impl ScrewSystem {
         let last = curve.len() - 1;
         let ends = [(curve[0], curve[1]), (curve[last], curve[last - 1])];
         let attained = !ends.iter().any(|(end, inner)| pitch == end.0 && end.1 < inner.1);
-        curve.retain(|(h, _)| h.abs() <= 10.0 * length);
+        let curve = curve[BEYOND..=last - BEYOND].to_vec();
         PitchChoice { pitch: Some(pitch), norm: smallest, curve, norm_at_infinity, attained }
     }
 }

@@ -212,6 +212,8 @@ fn the_chosen_pitch_is_the_best() {
         assert_eq!(choice.pitch.is_none(), case.never, "{:?}", case.form);
         assert_eq!(choice.norm_at_infinity, s.projector_norm(f64::INFINITY));
         assert!(choice.curve.windows(2).all(|w| w[0].0 < w[1].0));
+        // A thousandth of the length to ten lengths, of both signs, and zero.
+        assert_eq!(choice.curve.len(), 2 * (4 * 24 + 1) + 1);
         for (h, norm) in &choice.curve {
             assert_eq!(*norm, s.projector_norm(*h));
             // Up to the millionth for which a round number is kept.
