@@ -9,6 +9,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // a case that fails is named
 
 mod algebra;
+mod closure_mobility;
 mod closure_position;
 mod control;
 mod geometry;

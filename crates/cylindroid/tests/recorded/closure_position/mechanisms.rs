@@ -209,7 +209,7 @@ impl Sketch<'_, '_> {
         let places = links.map(|l| state.pose(open.frame(l).unwrap()).unwrap());
         let between = (places[0].translation + places[1].translation) * 0.5;
         let mut meeting = self.pose(0.3);
-        meeting.translation = meeting.translation + between;
+        meeting.translation += between;
         if self.planar {
             meeting.translation.z = 0.0;
         }
