@@ -236,8 +236,8 @@ impl Builder {
     fn index_links(&mut self) -> Result<BTreeMap<String, usize>> {
         let mut links = BTreeMap::new();
         for (i, link) in self.links.iter().enumerate() {
-            if link.name.is_empty() {
-                return self.refuse("", "a link has no name; give every link one");
+            if let Some(fault) = link.fault() {
+                return self.refuse(&link.name, fault);
             }
             if links.insert(link.name.clone(), i).is_some() {
                 return self.refuse(

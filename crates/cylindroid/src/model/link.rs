@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::magnitude;
 use crate::spatial::{Mat3, Pose, Vec3};
 
 /// A rigid body of a mechanism.
@@ -22,6 +23,21 @@ impl Link {
     #[must_use]
     pub fn named(name: &str) -> Self {
         Self { name: name.to_owned(), ..Self::default() }
+    }
+
+    /// Why no mechanism has such a link.
+    pub(super) fn fault(&self) -> Option<String> {
+        if self.name.is_empty() {
+            return Some("a link has no name; give every link one".into());
+        }
+        let Inertial { mass, link_from_inertia, inertia } = self.inertial.as_ref()?;
+        let name = &self.name;
+        if *mass < 0.0 {
+            return Some(format!("the mass of link '{name}' is {mass} kg; a mass is not negative"));
+        }
+        let numbers = [&[*mass], inertia.to_rows().as_flattened()].concat();
+        let fault = magnitude::fault(&numbers).or_else(|| magnitude::pose_fault(link_from_inertia));
+        Some(format!("the mass, inertia or pose of the inertia of link '{name}' {}", fault?))
     }
 }
 

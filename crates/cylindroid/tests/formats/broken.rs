@@ -85,6 +85,12 @@ fn names_given_twice_are_pointed_at() {
     check("<robot name='r'><link name='a'/><link name='a'/></robot>", "a", "two links are named");
 }
 
+#[test]
+fn masses_are_not_negative() {
+    let text = "<robot name='r'><link name='a'><inertial><mass value='-1'/></inertial></link></robot>";
+    check(text, "a", "the mass of link 'a' is -1 kg; a mass is not negative");
+}
+
 const THREE: &str = "<robot name='r'><link name='a'/><link name='b'/><link name='c'/>\
     <joint name='one' type='fixed'><parent link='a'/><child link='b'/></joint>\
     <joint name='two' type='fixed'><parent link='b'/><child link='c'/></joint></robot>";

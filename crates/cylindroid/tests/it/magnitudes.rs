@@ -5,7 +5,8 @@ use cylindroid::closure::{ModeOptions, frame_twists, operation_modes};
 use cylindroid::ik::{Analytic, NotSolvable};
 use cylindroid::kinematics::{Chain, KinematicsBatch, OrientationRates};
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch, body_inertia};
-use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::model::{Inertial, JointKind, JointSpec, Limits, Link};
+use cylindroid::spatial::Mat3;
 use cylindroid::tolerance::MAX_MAGNITUDE;
 use cylindroid::{Error, Matrix, Mechanism, Pose, ReferenceFrame, Vec3, catalogue};
 
@@ -118,4 +119,27 @@ fn frames_of_other_mechanisms_are_errors() {
     // A matrix of another size.
     let error = state.jacobian_into(panda.tool(), local, &mut Matrix::zeros(6, 6)).unwrap_err();
     assert!(error.to_string().contains("columns of the Jacobian"), "{error}");
+}
+
+#[test]
+fn masses_are_within_the_range() {
+    let built = |inertial: Inertial| {
+        let mut builder = Mechanism::builder("bob");
+        builder.joint(JointSpec::new("q", JointKind::Revolute, "base", "bob"));
+        builder.link(Link { inertial: Some(inertial), ..Link::named("bob") });
+        builder.build()
+    };
+    let good = Inertial { mass: 2.0, link_from_inertia: Pose::IDENTITY, inertia: Mat3::ZERO };
+    assert!(built(good).is_ok() && built(Inertial { mass: 0.0, ..good }).is_ok());
+    let far = Pose::from_translation(Vec3::X * 1e300);
+    for bad in [
+        Inertial { mass: -1.0, ..good },
+        Inertial { mass: f64::NAN, ..good },
+        Inertial { mass: 1e300, ..good },
+        Inertial { inertia: Mat3::from_rows([[f64::INFINITY; 3]; 3]), ..good },
+        Inertial { link_from_inertia: far, ..good },
+    ] {
+        let error = built(bad).unwrap_err().to_string();
+        assert!(error.contains("link 'bob'"), "{error}");
+    }
 }
