@@ -6,6 +6,8 @@
 
 #[path = "../../crates/cylindroid/tests/formats/mutation.rs"]
 mod mutation;
+#[path = "../../crates/cylindroid/tests/limits/one_task.rs"]
+mod one_task;
 #[path = "../../crates/cylindroid/tests/limits/robots.rs"]
 mod robots;
 #[path = "../../crates/cylindroid/tests/limits/rounds.rs"]

@@ -87,7 +87,8 @@ fn names_given_twice_are_pointed_at() {
 
 #[test]
 fn masses_are_not_negative() {
-    let text = "<robot name='r'><link name='a'><inertial><mass value='-1'/></inertial></link></robot>";
+    let text =
+        "<robot name='r'><link name='a'><inertial><mass value='-1'/></inertial></link></robot>";
     check(text, "a", "the mass of link 'a' is -1 kg; a mass is not negative");
 }
 

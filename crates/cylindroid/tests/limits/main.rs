@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a round that fails names its seed
 
+mod one_task;
 mod robots;
 mod rounds;
 mod watch;

@@ -3,18 +3,17 @@
 use cylindroid::closure::ActuationMap;
 use cylindroid::collision::{CollisionModel, CollisionOptions, NearPair};
 use cylindroid::control::{
-    CollisionAvoidance, MotionTask, SecondaryTask, ServoGains, Task, TaskObjective, TaskServo,
-    TaskServoOptions,
+    CollisionAvoidance, MotionTask, Task, TaskObjective, TaskServo, TaskServoOptions,
 };
-use cylindroid::inverse::Method;
 use cylindroid::model::{Geometry, JointLimits};
-use cylindroid::{Mechanism, Pose, Servo, ServoOptions, State};
+use cylindroid::{Mechanism, Pose, State};
 
+use crate::one_task::{follows_targets, follows_twists};
 use crate::robots::{ClampTo, Random, five_bar, of_catalogue, robot, spatial_loop};
 use crate::watch::{Tally, Watch};
 
 /// Steps of a round; few where a fuzzer chooses them.
-const STEPS: u64 = if cfg!(fuzzing) { 60 } else { 500 };
+pub(crate) const STEPS: u64 = if cfg!(fuzzing) { 60 } else { 500 };
 
 /// Steps between two looks at all distances.
 const LOOK: u64 = 5;
@@ -30,10 +29,11 @@ pub(crate) enum Kind {
     Distances,
     ClosedDistances,
     SpatialDistances,
+    Twists,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Catalogue,
         Self::Random,
         Self::Jerks,
@@ -42,6 +42,7 @@ impl Kind {
         Self::Distances,
         Self::ClosedDistances,
         Self::SpatialDistances,
+        Self::Twists,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -54,6 +55,7 @@ impl Kind {
             Self::Distances => "distances",
             Self::ClosedDistances => "distances of five-bars",
             Self::SpatialDistances => "distances of spatial loops",
+            Self::Twists => "twists",
         }
     }
 
@@ -64,8 +66,9 @@ impl Kind {
 
     pub(crate) fn of(seed: u64) -> Self {
         match seed % 20 {
-            0..6 => Self::Catalogue,
-            6..12 => Self::Random,
+            0..5 => Self::Catalogue,
+            5 | 6 => Self::Twists,
+            7..12 => Self::Random,
             12..15 => Self::Jerks,
             15 => Self::Closed,
             16..18 => Self::Tasks,
@@ -99,19 +102,21 @@ pub(crate) fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
     let mut tally = match kind {
         Kind::Catalogue | Kind::Closed => {
             let robot = of_catalogue(random, kind == Kind::Closed);
-            one_task(&robot, random)
+            follows_targets(&robot, random)
         }
-        Kind::Random => one_task(&robot(random, false), random),
+        Kind::Random => follows_targets(&robot(random, false), random),
         Kind::Jerks => {
             let way = random.below(4);
             let robot = robot(random, way == 3);
             let robot = with_jerks(&robot, random);
             match way {
-                0 | 1 => one_task(&robot, random),
+                0 | 1 => follows_targets(&robot, random),
                 2 => many_tasks(&robot, random),
                 _ => distances(&robot, random),
             }
         }
+        Kind::Twists if random.once_in(4) => follows_twists(&of_catalogue(random, true), random),
+        Kind::Twists => follows_twists(&robot(random, false), random),
         Kind::Tasks if random.once_in(5) => closed_tasks(random),
         Kind::Tasks => many_tasks(&robot(random, false), random),
         Kind::Distances => distances(&robot(random, true), random),
@@ -138,12 +143,12 @@ fn with_jerks(robot: &Mechanism, random: &mut Random<'_>) -> Mechanism {
 }
 
 /// A push changes velocities at once, which no jerk limit permits.
-fn takes_pushes(robot: &Mechanism) -> bool {
+pub(crate) fn takes_pushes(robot: &Mechanism) -> bool {
     robot.coordinates().iter().all(|c| c.limits.jerk == f64::INFINITY)
 }
 
 /// Something moves the robot: anywhere within the limits, or a little.
-fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random<'_>) {
+pub(crate) fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random<'_>) {
     let anywhere = random.configuration(robot);
     let share = if random.once_in(3) { 1.0 } else { random.power(-6.0, -1.0) };
     for ((x, to), c) in q.iter_mut().zip(anywhere).zip(robot.coordinates()) {
@@ -156,7 +161,7 @@ fn push(robot: &Mechanism, q: &mut [f64], random: &mut Random<'_>) {
 }
 
 /// A target near the pose, far away, beyond all numbers of robots, or the pose turned by a half.
-fn target(of: Pose, random: &mut Random<'_>) -> Pose {
+pub(crate) fn target(of: Pose, random: &mut Random<'_>) -> Pose {
     match random.below(8) {
         0 => random.pose(1e6),
         1 => random.pose(1.0),
@@ -169,70 +174,14 @@ fn target(of: Pose, random: &mut Random<'_>) -> Pose {
     }
 }
 
-fn one_task(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
-    let mut options = ServoOptions::new(robot);
-    options.dt = random.power(-4.0, -1.3);
-    let gain = random.power(-1.0, 0.28) / options.dt;
-    options.gain = ServoGains { position: gain, orientation: gain };
-    options.acceleration = random.power(-1.0, 4.0);
-    options.method = Method::ALL[random.below(Method::ALL.len())];
-    let closed = robot.is_closed();
-    if !closed && random.once_in(2) {
-        options.joint_weights = (0..robot.n()).map(|_| random.power(-3.0, 3.0)).collect();
-    }
-    if !closed && random.once_in(3) {
-        options.secondary = SecondaryTask::all(robot.home()).to_vec();
-    }
-    if !closed && random.once_in(4) {
-        options.task = [Task::POSITION, Task::POINTING][random.below(2)];
-    }
-    let (dt, acceleration) = (options.dt, options.acceleration);
-    let mut tally = Tally::default();
-    // Combinations that define no controller are refused, which is another test's matter.
-    let Ok(mut servo) = Servo::new(robot, options) else { return tally };
-    let end_effector = servo.options().end_effector;
-    let mut q = if closed { robot.home().to_vec() } else { random.configuration(robot) };
-    let mut watch = Watch::new(robot, dt, acceleration);
-    let mut goal = target(robot.state(&q).unwrap().pose(end_effector).unwrap(), random);
-    for step in 0..STEPS {
-        if random.once_in(150) {
-            goal = target(robot.state(&q).unwrap().pose(end_effector).unwrap(), random);
-        }
-        if !closed && random.once_in(250) && takes_pushes(robot) {
-            push(robot, &mut q, random);
-            watch.push();
-            tally.pushes += 1;
-        }
-        tally.steps += 1;
-        let outcome = servo.step(&q, goal);
-        if let Err(error) = outcome {
-            tally.errors += 1;
-            // A loop that opened is an error; a tree has none.
-            if !closed {
-                tally.violations.push(format!("step {step}: {error}"));
-            }
-            return tally;
-        }
-        let before = q.clone();
-        servo.advance(&mut q);
-        tally.note(step, &q);
-        if closed {
-            closed_step(robot, servo.joint_velocities(), &q, step, &mut tally);
-            continue;
-        }
-        match watch.step(&before, servo.joint_velocities(), &q) {
-            Ok(at_limit) => tally.at_limits += u64::from(at_limit),
-            Err(what) => {
-                tally.violations.push(format!("step {step}: {what}"));
-                return tally;
-            }
-        }
-    }
-    tally
-}
-
 /// In closed chains the velocities of the actuated joints have limits.
-fn closed_step(robot: &Mechanism, velocities: &[f64], q: &[f64], step: u64, tally: &mut Tally) {
+pub(crate) fn closed_step(
+    robot: &Mechanism,
+    velocities: &[f64],
+    q: &[f64],
+    step: u64,
+    tally: &mut Tally,
+) {
     for ((c, v), x) in robot.coordinates().iter().zip(velocities).zip(q) {
         let is_fast = c.actuated && v.abs() > c.limits.velocity * (1.0 + 1e-9);
         if !v.is_finite() || !x.is_finite() || is_fast {

@@ -14,6 +14,8 @@ mod closure_position;
 mod control;
 mod geometry;
 mod ik;
+#[path = "../limits/one_task.rs"]
+mod one_task;
 mod record;
 #[path = "../limits/robots.rs"]
 #[allow(dead_code)] // used in part

@@ -55,3 +55,8 @@ fn distances_of_five_bars() {
 fn distances_of_spatial_loops() {
     rounds_of(Kind::SpatialDistances, "servo_spatial_loops", 30);
 }
+
+#[test]
+fn twists() {
+    rounds_of(Kind::Twists, "servo_twists", 100);
+}
