@@ -6,10 +6,12 @@ The Toolbox is not imported: any object with these attributes is read.
 robot : name, links, base, tool, configs; for trees ee_links and grippers (links, tool)
 link of elementary transforms : name, parent, isjoint, jindex, qlim, v (kind, isflip), A(q)
 link of a Denavit-Hartenberg table : theta, d, a, alpha, offset, isflip, isrevolute, mdh, qlim
+any link, where it has them : m, r, I, Jm, G
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -20,24 +22,22 @@ from . import InvalidOptionError, Mechanism, parse
 
 #: What to use for members of the Toolbox that are not here.
 INSTEAD = {
-    "ets twists dhunique A a alpha d theta offset mdh": "Mechanism.joint_axes and Mechanism.fk_all",
+    "dhunique a alpha d theta offset mdh": "ets, joint by joint, or Mechanism.joint_axes: models other "
+    "than tables have no such numbers",
     "ikine_a ikine_analytic ikine_6s analytic_ik isspherical": "Mechanism.ik, which uses closed "
     "forms",
     "plot_ellipse": "cylindroid.plot.ellipsoid",
     "teach": "cylindroid.show",
-    "inertia r": "Mechanism.mass_matrix",
+    "r": "Mechanism.mass_matrix",
     "collided iscollided isselfcollided closest_point": "cylindroid.CollisionModel",
     "link_collision_damper joint_velocity_damper vision_collision_damper": "cylindroid.Servo",
-    "partial_fkine0": "Mechanism.hessian, the second derivative; higher ones are not here",
-    "links link_dict dfs_links hierarchy showgraph dotfile nlinks nbranches": "Mechanism.joints and "
-    "Mechanism.links",
-    "base base_link tool ee_links": "Mechanism.frames, and tool= of fkine and jacob0",
+    "dfs_links hierarchy showgraph dotfile graph": "links, each with its parent, or Mechanism.joints",
     "URDF urdf_string urdf_filepath": "cylindroid.load",
     "rne rne_python fdyn accel accel_x coriolis coriolis_x cinertia gravload gravload_x "
     "inertia_x itorque dynamics dynamics_list friction nofriction payload perturb paycap "
-    "jointdynamics delete_rne dynchanged gravity hasdynamics payload_capacity": "Pinocchio or "
+    "jointdynamics delete_rne dynchanged gravity payload_capacity": "Pinocchio or "
     "MuJoCo: this library has masses (Mechanism.mass_matrix), but no dynamics",
-    "addconfiguration addconfiguration_attr configurations_str": "configs, a dictionary",
+    "configurations_str": "configs, a dictionary",
     "config_validate": "Mechanism.outside_limits",
     "attach attach_to": "Mechanism.with_tool, or a mechanism file of several robots",
     "copy": "the robot itself: a Mechanism never changes",
@@ -45,13 +45,15 @@ INSTEAD = {
     "draws the shapes",
     "hascollision": "cylindroid.CollisionModel",
     "fkine_path get_path": "Mechanism.fk_all",
-    "graph": "Mechanism.joints and Mechanism.links",
     "grippers": "Mechanism.frames",
     "symbolic": "numbers: nothing here is symbolic",
-    "todegrees toradians": "numpy.degrees and numpy.radians",
     "update control_mode default_backend set_default_backend": "cylindroid.show, whose view.q is set",
     "comment manufacturer keywords": "Mechanism.name: files of models have no such texts",
 }
+
+
+#: Numbers of a link of the Toolbox that mechanisms do not give out.
+MASSES = ("m", "r", "I", "Jm", "G", "B", "Tc")
 
 
 class NotHere(NotImplementedError, AttributeError):
@@ -74,19 +76,34 @@ def is_toolbox_robot(robot: object) -> bool:
     return all(hasattr(robot, name) for name in ("links", "base", "tool"))
 
 
-def mechanism_of(robot: Any) -> tuple[Mechanism, str]:
-    """The mechanism of a robot of the Toolbox, and the frame of its end effector.
+@dataclass(frozen=True)
+class Reading:
+    """A robot of the Toolbox as a mechanism."""
 
-    Joints, limits and poses are read; masses, meshes and the fingers of grippers are not.
+    mechanism: Mechanism
+    #: The frame of the end effector.
+    end: str
+    #: The links that it has there.
+    links: list[str]
+    #: Those whose motors have an inertia.
+    motors: list[str]
+
+
+def reading_of(robot: Any) -> Reading:
+    """The mechanism of a robot of the Toolbox.
+
+    Joints, limits, poses and masses of links are read; motors, meshes and the fingers of grippers are
+    not.
     """
     links = list(robot.links)
     if not links:
         raise InvalidOptionError(f"robot = {robot.name!r} cannot be used: it has no links")
     tool = _matrix(robot.tool)
     if hasattr(links[0], "alpha"):
-        joints, last, pose = _of_table(links)
-        tool = pose @ tool
+        names = [f"link{i + 1}" for i in range(len(links))]
+        joints, last = _of_table(links, names), names[-1]
     else:
+        names = [str(link.name) for link in links]
         joints = _of_transforms(links)
         grippers = getattr(robot, "grippers", None) or []
         if grippers:
@@ -99,6 +116,8 @@ def mechanism_of(robot: Any) -> tuple[Mechanism, str]:
     joints.fixed(f"{robot.name}: base", "world", ROOT, _matrix(robot.base))
     frame = f"{robot.name}: tool"
     joints.fixed(frame, last, frame, tool)
+    for name, link in zip(names, links):
+        joints.has_mass(name, link)
     mechanism = parse(joints.urdf(str(robot.name)), "urdf")
     if mechanism.joint_names != joints.names():
         order = ", ".join(mechanism.joint_names)
@@ -106,7 +125,12 @@ def mechanism_of(robot: Any) -> tuple[Mechanism, str]:
             f"robot = {robot.name!r} cannot be used: its joints are not numbered from the base to "
             f"the tips, which would be {order}"
         )
-    return mechanism, frame
+    motors = [name for name, link in zip(names, links) if _is_driven(link)]
+    return Reading(mechanism, frame, names, motors)
+
+
+def _is_driven(link: Any) -> bool:
+    return bool(getattr(link, "Jm", 0.0) and getattr(link, "G", 0.0))
 
 
 class _Joints:
@@ -114,6 +138,7 @@ class _Joints:
 
     def __init__(self) -> None:
         self.links = [ROOT]
+        self.masses: dict[str, str] = {}
         self.moving: list[tuple[int, str, str]] = []
         self.rigid: list[str] = []
 
@@ -123,7 +148,7 @@ class _Joints:
 
     def moves(
         self, place: int, parent: str, child: str, pose: NDArray[np.float64], kind: str,
-        sign: int, limits: Any,
+        sign: int, limits: Any, name: str,
     ) -> None:
         """A joint along or about an axis, such as 'Rz' or 'tx'; in the plane 'R' is about z."""
         self.links += [link for link in (parent, child) if link not in self.links]
@@ -133,14 +158,31 @@ class _Joints:
         type = "prismatic" if kind[0] == "t" else "revolute" if bounded else "continuous"
         if bounded:
             inside += f'<limit lower="{float(limits[0])!r}" upper="{float(limits[1])!r}"/>'
-        self.moving.append((place, child, _joint(child, type, parent, child, pose, inside)))
+        self.moving.append((place, name, _joint(name, type, parent, child, pose, inside)))
+
+    def has_mass(self, name: str, link: Any) -> None:
+        """The mass of a link, its centre and its inertia about it, in the axes of the link."""
+        mass = float(getattr(link, "m", None) or 0.0)
+        center = np.asarray(getattr(link, "r", np.zeros(3)), dtype=float)
+        inertia = np.asarray(getattr(link, "I", np.zeros((3, 3))), dtype=float)
+        if center.shape != (3,) or inertia.shape != (3, 3) or not (mass or np.any(inertia)):
+            return
+        numbers = " ".join(repr(float(x)) for x in center)
+        entries = " ".join(
+            f'i{"xyz"[i]}{"xyz"[j]}="{float(inertia[i, j])!r}"' for i in range(3) for j in range(i, 3)
+        )
+        self.masses[name] = (
+            f'<inertial><origin xyz="{numbers}"/><mass value="{mass!r}"/><inertia {entries}/></inertial>'
+        )
 
     def names(self) -> list[str]:
         """The joints in the order of q."""
         return [name for _, name, _ in sorted(self.moving)]
 
     def urdf(self, name: str) -> str:
-        links = "".join(f"<link name={quoteattr(link)}/>" for link in self.links)
+        links = "".join(
+            f"<link name={quoteattr(link)}>{self.masses.get(link, '')}</link>" for link in self.links
+        )
         joints = "".join(text for _, _, text in sorted(self.moving))
         return f"<robot name={quoteattr(name)}>{links}{joints}{''.join(self.rigid)}</robot>"
 
@@ -148,7 +190,7 @@ class _Joints:
 def _joint(
     name: str, type: str, parent: str, child: str, pose: NDArray[np.float64], inside: str
 ) -> str:
-    (roll, pitch, yaw), xyz = _rpy(pose[:3, :3]), pose[:3, 3]
+    (roll, pitch, yaw), xyz = rpy(pose[:3, :3]), pose[:3, 3]
     numbers = " ".join(repr(float(x)) for x in xyz)
     return (
         f"<joint name={quoteattr(name)} type='{type}'><parent link={quoteattr(parent)}/>"
@@ -157,7 +199,7 @@ def _joint(
     )
 
 
-def _rpy(R: NDArray[np.float64]) -> tuple[float, float, float]:
+def rpy(R: NDArray[np.float64]) -> tuple[float, float, float]:
     """Angles about fixed x, y, z; accurate also where the pitch is a right angle."""
     pitch = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
     yaw = np.arctan2(R[1, 0], R[0, 0])
@@ -183,31 +225,33 @@ def _of_transforms(links: list[Any]) -> _Joints:
         pose = _matrix(link.A(0.0) if link.isjoint else link.A())
         if link.isjoint:
             kind, sign = str(link.v.kind), -1 if link.v.isflip else 1
-            joints.moves(link.jindex, parent, link.name, pose, kind, sign, link.qlim)
+            joints.moves(link.jindex, parent, link.name, pose, kind, sign, link.qlim, link.name)
         else:
             joints.fixed(link.name, parent, link.name, pose)
     return joints
 
 
-def _of_table(links: list[Any]) -> tuple[_Joints, str, NDArray[np.float64]]:
-    """The joints, the last link and the pose of its end."""
+def _of_table(links: list[Any], names: list[str]) -> _Joints:
+    """The joints; where a link ends beyond its joint, the joint has a frame of its own."""
     joints = _Joints()
-    name, pose = ROOT, np.eye(4)
-    for i, link in enumerate(links):
+    parent = ROOT
+    for i, (link, name) in enumerate(zip(links, names)):
         theta, d, a, alpha = (float(getattr(link, x)) for x in ("theta", "d", "a", "alpha"))
         offset = float(link.offset)
         if link.isrevolute:
             theta = offset
         else:
             d = offset
-        before, after = _screw("x", alpha, a), _screw("z", theta, d)
-        sign = -1 if link.isflip else 1
-        kind = "Rz" if link.isrevolute else "tz"
-        pose = pose @ before @ after if link.mdh else pose @ after
-        child = f"link{i + 1}"
-        joints.moves(i, name, child, pose, kind, sign, link.qlim)
-        name, pose = child, np.eye(4) if link.mdh else before
-    return joints, name, pose
+        along_x, along_z = _screw("x", alpha, a), _screw("z", theta, d)
+        sign, kind = -1 if link.isflip else 1, "Rz" if link.isrevolute else "tz"
+        if link.mdh:
+            joints.moves(i, parent, name, along_x @ along_z, kind, sign, link.qlim, name)
+        else:
+            axis = f"axis of {name}"
+            joints.moves(i, parent, axis, along_z, kind, sign, link.qlim, name)
+            joints.fixed(name, axis, name, along_x)
+        parent = name
+    return joints
 
 
 def _screw(axis: str, angle: float, length: float) -> NDArray[np.float64]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import InvalidOptionError, Mechanism
+from . import Constraint, InvalidOptionError, Mechanism, pinv
 from ._toolbox import NotHere
 
 #: Components by the Toolbox's names of their sets.
@@ -17,6 +17,9 @@ AXES = {
     "trans": "x,y,z",
     "rot": "rx,ry,rz",
 }
+
+#: Measures of manipulability.
+METHODS = ("yoshikawa", "minsingular", "invcondition", "asada")
 
 #: Options of its searches for inverse kinematics, and how many of them one search has.
 SEARCH = {"k", "kj", "ks", "method", "kq", "km", "ps", "pi", "pinv", "pinv_damping"}
@@ -69,6 +72,20 @@ def measure(spectrum: Any, method: str, possible: int) -> float:
         return spectrum.volume
     ratio = finite[-1] if method == "minsingular" else finite[-1] / finite[0]
     return float(np.sqrt(ratio))
+
+
+def asada(J: NDArray[np.float64], M: NDArray[np.float64], task: str) -> float:
+    """Least over largest eigenvalue of the rows and columns `task` of J+^T M J+; zero below rank six.
+
+    These eigenvalues are the efficiencies of J+ in the metric M.
+    """
+    inverse = pinv(J, max(J.shape) * np.finfo(float).eps)  # the threshold of numpy.linalg.matrix_rank
+    if inverse.rank < 6:
+        return 0.0
+    all_axes = AXES["all"].split(",")
+    columns = inverse.matrix[:, [all_axes.index(axis) for axis in task.split(",")]]
+    spectrum = Constraint(columns).manipulability(Wu=M).kinematic
+    return float(spectrum.finite[-1] / spectrum.finite[0]) if spectrum.zeros == 0 else 0.0
 
 
 def _chosen(mask: NDArray[np.bool_]) -> str:

@@ -82,10 +82,14 @@ def from_pose_to_pose(
             raise refused(name, found.reason)
         given = {"q0": found.q}
         ends.append(found.q)
-    trajectory = _quintic(ends[0], ends[1], times)
-    if not np.isfinite(trajectory.qdd).all():
-        raise refused("t", f"{times[-1]} s are too short for a motion")
-    return trajectory
+    return _quintic(ends[0], ends[1], times)
+
+
+def from_configurations(
+    q0: NDArray[np.float64], qf: NDArray[np.float64], t: ArrayLike
+) -> Trajectory:
+    """`jtraj` of two configurations, (n,)."""
+    return _quintic(q0, qf, _times_of(t))
 
 
 def _times_of(t: ArrayLike) -> NDArray[np.float64]:
@@ -122,4 +126,6 @@ def _quintic(
     with np.errstate(all="ignore"):  # of times so short that nothing finite moves so fast
         shares = [law.deriv(order)(times / length) / length**order for order in range(3)]
         q, qd, qdd = (np.outer(share, way) for share in shares)
+    if not np.isfinite(qdd).all():
+        raise refused("t", f"{times[-1]} s are too short for a motion")
     return Trajectory(times, start + q, qd, qdd)

@@ -7,7 +7,8 @@
 
 A robot of the Toolbox itself is read by its links: ``Robot(roboticstoolbox.models.DH.Puma560())``.
 
-What is as there: ``jacob0`` has world axes and its linear part at the end effector's origin,
+What is as there: ``links`` with name, parent, ``jindex`` and ``A(q)``, ``ets``, ``base`` and ``tool``, which
+can be read and not set; ``jacob0`` has world axes and its linear part at the end effector's origin,
 ``jacobe`` the axes of the end effector; ``ikine_LM`` returns ``.q``, ``.success``, ``.iterations``,
 ``.searches``, ``.residual``, and ``ik_LM`` the same as a tuple. What is not: poses are arrays of
 4 x 4, not ``SE3``; all methods of inverse kinematics are the one of `Mechanism.ik`, which keeps joint
@@ -21,6 +22,7 @@ joints do span, where there it is zero. Members of the Toolbox that are not here
 from __future__ import annotations
 
 import os
+from copy import copy
 from functools import partial
 from typing import Any
 
@@ -28,23 +30,26 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import Mechanism, load
-from ._toolbox import ROOT, NotHere, instead_of, is_toolbox_robot, mechanism_of
+from ._toolbox import ROOT, NotHere, instead_of, is_toolbox_robot, reading_of
 from ._toolbox_arguments import (
     AXES,
+    METHODS,
+    asada,
     check_given,
     check_search,
     in_axes_of,
     inverse_kinematics,
     measure,
-    stored_vector,
     task_of,
 )
-from ._toolbox_results import IKSolution, Trajectory, from_pose_to_pose
+from ._toolbox_links import ET, ETS, Link
+from ._toolbox_results import IKSolution, Trajectory, from_configurations, from_pose_to_pose
+from ._toolbox_structure import Structure
 
-__all__ = ["IKSolution", "Robot", "Trajectory"]
+__all__ = ["ET", "ETS", "IKSolution", "Link", "Robot", "Trajectory"]
 
 
-class Robot:
+class Robot(Structure):
     """A mechanism with the methods of the Toolbox.
 
     Parameters
@@ -63,21 +68,24 @@ class Robot:
     """
 
     def __init__(self, robot: Mechanism | str | os.PathLike[str] | Any) -> None:
-        #: Named configurations, (n,) each.
-        self.configs: dict[str, NDArray[np.float64]] = {}
-        #: The frame that poses without the base are relative to; None for the world.
-        self._base: str | None = None
-        if isinstance(robot, Mechanism):
-            self.mechanism, self._end = robot, robot.tool
-        elif is_toolbox_robot(robot):
-            self.mechanism, self._end = mechanism_of(robot)
-            self._base = ROOT
+        self.configs, self._base, self._motors = {}, None, []
+        if is_toolbox_robot(robot):
+            found = reading_of(robot)
+            self.mechanism, self._end, self._motors = found.mechanism, found.end, found.motors
+            self._base, self._links = ROOT, found.links
             configs = getattr(robot, "configs", None) or {}
             self.configs = {name: np.array(q, dtype=float) for name, q in configs.items()}
         else:
-            self.mechanism = load(robot)
-            self._end = self.mechanism.tool
+            self.mechanism = robot if isinstance(robot, Mechanism) else load(robot)
+            self._end, self._links = self.mechanism.tool, self.mechanism.links
         self._now = {name: np.zeros(self.n) for name in ("q", "qd", "qdd")}
+
+    def copy(self) -> Robot:
+        """The same mechanism, with configurations of its own."""
+        own = copy(self)
+        own.configs = {name: q.copy() for name, q in self.configs.items()}
+        own._now = {name: q.copy() for name, q in self._now.items()}
+        return own
 
     def __getattr__(self, name: str) -> Any:
         configs = self.__dict__.get("configs", {})
@@ -86,74 +94,6 @@ class Robot:
         if (instead := instead_of(name)) is not None:
             raise NotHere(f"'{name}' of the Robotics Toolbox is not in cylindroid.rtb; use {instead}")
         raise AttributeError(f"'Robot' object has no attribute '{name}'")
-
-    @property
-    def n(self) -> int:
-        """Number of joints."""
-        return self.mechanism.n
-
-    @property
-    def name(self) -> str:
-        """Its name."""
-        return self.mechanism.name
-
-    @property
-    def qlim(self) -> NDArray[np.float64]:
-        """Joint limits, (2, n): lower, upper [rad or m]."""
-        return np.stack([self.mechanism.lower, self.mechanism.upper])
-
-    @property
-    def qz(self) -> NDArray[np.float64]:
-        """All joints at zero, (n,), unless the robot of the Toolbox has another `qz`."""
-        return self.configs.get("qz", np.zeros(self.n)).copy()
-
-    @property
-    def qr(self) -> NDArray[np.float64]:
-        """The `qr` of the robot of the Toolbox, otherwise the home configuration, (n,)."""
-        return self.configs.get("qr", self.mechanism.home).copy()
-
-    q = stored_vector("q", "A configuration to keep, (n,) [rad or m]; zero at first.")
-    qd = stored_vector("qd", "Joint velocities to keep, (n,) [rad/s or m/s]; zero at first.")
-    qdd = stored_vector("qdd", "Joint accelerations, (n,) [rad/s^2 or m/s^2]; zero at first.")
-
-    def isrevolute(self, j: int) -> bool:
-        """True if coordinate j is an angle."""
-        return self.revolutejoints[j]
-
-    def isprismatic(self, j: int) -> bool:
-        """True if coordinate j is a length."""
-        return self.prismaticjoints[j]
-
-    @property
-    def reach(self) -> float:
-        """The characteristic length (m)."""
-        return self.mechanism.reach
-
-    @property
-    def revolutejoints(self) -> list[bool]:
-        """For each coordinate, true if it is an angle."""
-        return [unit == "rad" for unit in self.mechanism.units]
-
-    @property
-    def prismaticjoints(self) -> list[bool]:
-        """For each coordinate, true if it is a length."""
-        return [unit != "rad" for unit in self.mechanism.units]
-
-    @property
-    def structure(self) -> str:
-        """'R' for each angle and 'P' for each length."""
-        return "".join("R" if angle else "P" for angle in self.revolutejoints)
-
-    def islimit(self, q: ArrayLike) -> list[bool]:
-        """For each coordinate, true at or beyond a limit; q of shape (n,)."""
-        q, (lower, upper) = self.mechanism.ordered(q), self.qlim
-        return [bool(x) for x in (q <= lower) | (q >= upper)]
-
-    def random_q(self, seed: int | None = None) -> NDArray[np.float64]:
-        """A configuration within the limits, pi or 1 m where there are none, (n,)."""
-        most = np.where(self.revolutejoints, np.pi, 1.0)
-        lower, upper = np.maximum(self.qlim[0], -most), np.minimum(self.qlim[1], most)
-        return np.random.default_rng(seed).uniform(np.minimum(lower, upper), upper)
 
     def fkine(
         self,
@@ -247,6 +187,20 @@ class Robot:
         pose = self.fkine(q, end, tool=tool)[..., None, :, :]
         return in_axes_of(pose, self.hessian0(q, end, start, None, tool))
 
+    def partial_fkine0(
+        self, q: ArrayLike, n: int = 3, end: str | None = None, start: str | None = None
+    ) -> NDArray[np.float64]:
+        """The n-th derivative of the pose: `jacob0` for n = 1, `hessian0` for n = 2; no others.
+
+        Raises
+        ------
+        NotImplementedError
+            For n from 3, which is the default of the Toolbox.
+        """
+        if n not in (1, 2):
+            raise NotHere(f"n = {n!r}: derivatives of order 1 and 2 are in cylindroid.rtb")
+        return self.jacob0(q, end, start) if n == 1 else self.hessian0(q, end, start)
+
     def jacob0_dot(
         self,
         q: ArrayLike,
@@ -339,8 +293,9 @@ class Robot:
         start : str, optional
             The base.
         method : str
-            'yoshikawa' (volume of the velocity ellipsoid), 'minsingular' (smallest singular value)
-            or 'invcondition' (smallest over largest singular value).
+            'yoshikawa' (volume of the velocity ellipsoid), 'minsingular' (smallest singular value),
+            'invcondition' (smallest over largest singular value) or 'asada' (smallest over largest
+            inertia at the end effector, from the masses of `inertia`; of a closed chain none).
         axes : str or six booleans
             'all', 'trans', 'rot', or which of x, y, z, rx, ry, rz.
 
@@ -349,15 +304,21 @@ class Robot:
         float, or ndarray, (N,)
         """
         task = task_of(axes)
-        if method == "asada":
-            raise NotHere("method = 'asada' is not in cylindroid.rtb; use Mechanism.manipulability")
-        if method not in ("yoshikawa", "minsingular", "invcondition"):
-            raise ValueError(f"method = {method!r}: 'yoshikawa', 'minsingular' or 'invcondition'")
+        if method not in METHODS:
+            raise ValueError(f"method = {method!r}: one of {', '.join(METHODS)}")
         check_given("J", J, None if q is None else partial(self.jacob0, q, end))
         self._from_base(start, "manipulability")
         q = self.mechanism.ordered(self.qr if q is None else q)
-        found = self.mechanism.manipulability(np.atleast_2d(q), reference=end or self._end, task=task)
-        values = [measure(r.kinematic, method, min(task.count(",") + 1, self.n)) for r in found]
+        many = np.atleast_2d(q)
+        if method == "asada":
+            if self.mechanism.is_closed:
+                raise NotHere("method = 'asada' of closed chains is not in cylindroid.rtb")
+            both = zip(self.jacob0(many, end), self.inertia(many))
+            values = [asada(J, M, task) for J, M in both]
+        else:
+            found = self.mechanism.manipulability(many, reference=end or self._end, task=task)
+            possible = min(task.count(",") + 1, self.n)
+            values = [measure(report.kinematic, method, possible) for report in found]
         return values[0] if np.ndim(q) == 1 else np.array(values)
 
     def ikine_LM(
@@ -447,16 +408,17 @@ class Robot:
     ik_NR = ik_GN = ik_LM
 
     def jtraj(self, T1: ArrayLike, T2: ArrayLike, t: ArrayLike, **options: Any) -> Trajectory:
-        """A motion of the joints between two poses, along a straight line of configurations.
+        """A motion of the joints, along a straight line of configurations.
 
         Parameters
         ----------
-        T1, T2 : array_like, (4, 4)
-            Poses of the end effector (m).
+        T1, T2 : array_like, (n,) or (4, 4)
+            Two configurations [rad or m], or two poses of the end effector (m).
         t : int, or array_like, (N,)
             A number of times from 0 to 1 s, or times that rise from 0 (s).
         **options
-            Those of `ikine_LM`; `q0` is for T1, from whose configuration the search for T2 starts.
+            Of poses those of `ikine_LM`; `q0` is for T1, from whose configuration the search for T2
+            starts.
 
         Returns
         -------
@@ -468,6 +430,9 @@ class Robot:
         InvalidOptionError
             A pose that is not reached, times that do not rise.
         """
+        if not options and all(np.ndim(end) == 1 for end in (T1, T2)):
+            ordered = self.mechanism.ordered
+            return from_configurations(ordered(T1), ordered(T2), t)
         return from_pose_to_pose(partial(self.ikine_LM, **options), T1, T2, t)
 
     def _ellipse(self, q: ArrayLike | None, opt: str, kind: str, options: dict[str, Any]) -> Any:
