@@ -327,7 +327,7 @@ impl Servo {
 
         let (saturation, braking) = match self.store_unlimited_rates(q, rank) {
             Some(braking) => (Saturation::NONE, braking),
-            None => self.store_limited_rates()?,
+            None => self.store_limited_rates(aim.is_rest())?,
         };
 
         self.note_configuration(q);

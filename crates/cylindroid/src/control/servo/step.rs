@@ -61,6 +61,11 @@ pub(super) enum Aim {
 }
 
 impl Aim {
+    /// True where no motion is commanded.
+    pub(super) fn is_rest(self) -> bool {
+        matches!(self, Self::Twist(twist) if twist == Twist::ZERO)
+    }
+
     /// The target of a tool at this pose.
     pub(super) fn target(self, pose: Pose) -> Target {
         match self {

@@ -24,7 +24,8 @@ pub(super) const NEAR_SINGULAR: f64 = 0.02;
 /// Status of a servo in velocity mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TwistStatus {
-    /// No twist is commanded, or the last command is too old, and all joints are at rest.
+    /// No twist is commanded, or the last command is too old, and all joints are at rest; passive ones of
+    /// closed chains but for the velocities that close the measured loops.
     AtRest,
     /// No twist is commanded, or the last command is too old: the joints brake.
     Braking,

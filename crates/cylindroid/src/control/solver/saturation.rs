@@ -233,6 +233,29 @@ impl Saturator {
         saturation
     }
 
+    /// Slows the last motion as far as the bounds permit, all joints together: to rest if they do.
+    pub(in crate::control) fn brake(
+        &mut self,
+        p: &Problem<'_>,
+        coupling: Option<&mut Coupling>,
+        rates: &mut [f64],
+    ) -> Saturation {
+        match coupling {
+            None => brake(p, rates),
+            Some(coupling) => {
+                coupling.expand(&coupling.last, rates);
+                self.more.iter_mut().zip(&*rates).for_each(|(more, rate)| *more = -rate);
+                let share = interval(rates, &self.more, p.bounds).map_or(1.0, |span| span.most);
+                for (y, last) in coupling.actuation.iter_mut().zip(&coupling.last) {
+                    *y = last * (1.0 - share);
+                }
+                coupling.expand(&coupling.actuation, rates);
+                coupling.correct(p.bounds, rates);
+            }
+        }
+        Saturation::NONE
+    }
+
     /// The whole task with a share of the secondary motion, or a scaled task if accelerations alone
     /// bound it, with the shares of both; `None` if that is not enough.
     fn scale_down(

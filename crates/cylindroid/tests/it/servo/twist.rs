@@ -87,6 +87,62 @@ fn the_watchdog_stops_the_arm() {
     assert_eq!(servo.step_twist(&q, None).unwrap().desired, Twist::ZERO);
 }
 
+/// Without a command every joint brakes, those of self-motions too: a panda turned its elbow for
+/// seconds.
+#[test]
+fn without_a_command_all_joints_brake() {
+    let mut random = Random(31);
+    for name in ["panda", "iiwa14", "ur5e", "youbot"] {
+        let robot = catalogue::load(name).unwrap();
+        for _ in 0..12 {
+            let mut servo = servo(&robot, |o| (o.dt, o.command_timeout) = (DT, DT));
+            let middle = |c: &cylindroid::model::Coordinate| {
+                let (lower, upper) = (c.limits.lower.max(-3.0), c.limits.upper.min(3.0));
+                lower + (upper - lower) * random.within(0.2, 0.8)
+            };
+            let mut q: Vec<f64> = robot.coordinates().iter().map(middle).collect();
+            let twist = Twist { linear: random.vec3(0.2), angular: random.vec3(0.2) };
+            follow(&mut servo, &mut q, twist, 0.4);
+            servo.step_twist(&q, None).unwrap();
+            let mut before = servo.joint_velocities().to_vec();
+            // 20 rad/s^2 is the default ramp.
+            let slowest = before
+                .iter()
+                .zip(robot.coordinates())
+                .map(|(rate, c)| rate.abs() / c.limits.acceleration.min(20.0));
+            let time = slowest.fold(0.0, f64::max);
+            for _ in 0..(time / DT) as usize + 2 {
+                servo.advance(&mut q);
+                servo.step_twist(&q, None).unwrap();
+                for (rate, before) in servo.joint_velocities().iter().zip(&before) {
+                    assert!(rate.abs() <= before.abs(), "{name}: {rate} after {before}");
+                }
+                before.copy_from_slice(servo.joint_velocities());
+            }
+            assert!(before.iter().all(|rate| *rate == 0.0), "{name}: {before:?} after {time} s");
+        }
+    }
+}
+
+/// Drives that stand still are at rest, whatever noise the passive joints correct.
+#[test]
+fn closed_chains_brake_under_noise() {
+    let mut random = Random(32);
+    for name in ["stewart", "two-arm", "delta", "five-bar"] {
+        let robot = catalogue::load(name).unwrap();
+        let mut servo = servo(&robot, |o| (o.dt, o.command_timeout) = (DT, DT));
+        let mut q = robot.home().to_vec();
+        let mut status = TwistStatus::Following;
+        for step in 0..300 {
+            let noisy: Vec<f64> = q.iter().map(|x| x + random.within(-1e-4, 1e-4)).collect();
+            let command = (step < 100).then_some(linear(Vec3::X * 0.02));
+            status = servo.step_twist(&noisy, command).unwrap().status;
+            servo.advance(&mut q);
+        }
+        assert_eq!(status, TwistStatus::AtRest, "{name}");
+    }
+}
+
 #[test]
 fn pushed_outwards_it_stalls_and_says_why() {
     // At the edge of the workspace: the arm is stretched.

@@ -13,10 +13,13 @@ use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
 
 impl Servo {
-    /// Bounds, computes and stores the joint velocities.
-    pub(super) fn store_limited_rates(&mut self) -> Result<(Saturation, BrakingState)> {
+    /// Bounds, computes and stores the joint velocities; where nothing is commanded, all joints brake.
+    pub(super) fn store_limited_rates(
+        &mut self,
+        brakes: bool,
+    ) -> Result<(Saturation, BrakingState)> {
         self.load_bounds();
-        let mut saturation = self.saturate()?;
+        let mut saturation = self.saturate(brakes)?;
         Error::check_finite("joint velocities", &self.primary)?;
         let share = self.progress();
         if share.is_some() && self.escape() {

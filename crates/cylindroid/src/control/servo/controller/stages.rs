@@ -133,8 +133,9 @@ impl Servo {
         Ok(found.closed.then_some(found.q))
     }
 
-    /// Bounds the primary and secondary velocities of a step.
-    pub(super) fn saturate(&mut self) -> Result<Saturation> {
+    /// Bounds the primary and secondary velocities of a step; where nothing is commanded, all joints brake,
+    /// those of self-motions too.
+    pub(super) fn saturate(&mut self, brakes: bool) -> Result<Saturation> {
         for i in 0..self.last.len() {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
@@ -147,6 +148,13 @@ impl Servo {
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
         let path = if self.edge_aim.is_some() { Path::Curved } else { Path::Straight };
         let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
+        if brakes {
+            let coupling = self.coupled.as_mut().map(|coupled| {
+                coupled.load_last(&self.rates, &self.space);
+                &mut coupled.coupling
+            });
+            return Ok(self.saturator.brake(&problem, coupling, &mut self.primary));
+        }
         let Some(coupled) = &mut self.coupled else {
             // Arms without self-motions do not swing, and come back to targets less often from this way.
             let nearest = self.nearest_pose.as_ref().filter(|_| self.edge_aim.is_some());

@@ -63,7 +63,7 @@ impl Servo {
         self.twist_follower.record(command, &self.error, &self.achieved_twist, dt);
         let stalled = self.twist_follower.is_stalled;
         let status = match (at_rest, stalled || self.is_stopped()) {
-            (true, _) if self.rates.iter().all(|rate| *rate == 0.0) => TwistStatus::AtRest,
+            (true, _) if self.is_at_rest() => TwistStatus::AtRest,
             (true, _) => TwistStatus::Braking,
             (false, true) => TwistStatus::Stalled,
             (false, false) => TwistStatus::Following,
@@ -77,6 +77,12 @@ impl Servo {
             _ => seen,
         };
         Ok(TwistStep { status, desired, achieved, timed_out, step })
+    }
+
+    /// True if no joint is commanded to move, of closed chains but to close the measured loops.
+    fn is_at_rest(&self) -> bool {
+        let motion = self.coupled.as_ref().map_or(&self.rates, |c| &c.coupling.actuation);
+        motion.iter().all(|rate| *rate == 0.0)
     }
 
     /// The reason of a stall; in velocity mode near a singularity, the singularity.
