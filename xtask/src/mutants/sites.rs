@@ -109,7 +109,10 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
             syn::Meta::List(list) if a.path().is_ident("cfg") => list.tokens.to_string(),
             _ => String::new(),
         };
-        a.path().is_ident("test") || condition == "test" || condition.starts_with("any (test")
+        let with_others = ["any (test", "all (test"];
+        a.path().is_ident("test")
+            || condition == "test"
+            || with_others.iter().any(|start| condition.starts_with(start))
     })
 }
 
