@@ -415,8 +415,8 @@ impl Builder {
         let (tool, tool_choice) = match &self.tool {
             Some(name) => (named("tool", name)?, ToolChoice::Named),
             None => {
-                let (joints, by_name) = (&self.joints, self.by_name);
-                DefaultTool { order, joints, links, frames: &frames, by_name }.choose()
+                let (joints, loops, by_name) = (&self.joints, &self.loops, self.by_name);
+                DefaultTool { order, joints, loops, links, frames: &frames, by_name }.choose()
             }
         };
         let reference = match &self.reference {

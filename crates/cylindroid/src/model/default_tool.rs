@@ -5,6 +5,9 @@
 //!          words, best first (`GROUPS`). Names that also contain a word for a sensor, a finger or a
 //!          marker do not count, nor do frames moved by fewer than half of the moving joints of the
 //!          longest chain (three quarters for feet): objects in the scene, mounts
+//! Beyond   nor do frames in the middle of a chain, beyond whose body a joint moves (`flange1`, tool
+//!          changers), other than a finger: a joint or link with a word for one, one of several
+//!          branches that are shorter than the chain before them, or the rest of a loop
 //! Among    frames of one group: fewest other words, most moving joints, sites before links, most
 //!          joints, fewest words, the last in the file
 //! Chain    without such a name: the branch with the most moving joints at every fork, until its rest
@@ -18,6 +21,7 @@ use std::collections::BTreeMap;
 
 use super::joint::JointKind;
 use super::joint_spec::JointSpec;
+use super::loop_joint::LoopJointSpec;
 use super::mechanism::{Frame, Mechanism};
 use super::natural_order::Natural;
 use super::tool_choice::ToolChoice;
@@ -26,7 +30,7 @@ use super::tree_order::TreeOrder;
 /// Words of frames that are meant, best first.
 const GROUPS: [&[&str]; 8] = [
     &["tcp"],
-    &["grasp", "grasping", "grip", "gripsite", "pinch", "pinchsite"],
+    GRIPS,
     &["tool"],
     &["ee", "eef", "effector", "endeffector"],
     &["gripper"],
@@ -34,6 +38,7 @@ const GROUPS: [&[&str]; 8] = [
     &["flange", "attachment"],
     FEET,
 ];
+const GRIPS: &[&str] = &["grasp", "grasping", "grip", "gripsite", "pinch", "pinchsite"];
 const FEET: &[&str] = &["foot", "toe"];
 
 /// Words that add nothing to one of them.
@@ -66,34 +71,22 @@ const SENSORS: [&str; 23] = [
     "touch",
 ];
 
-/// Words of the parts of hands, and of markers that show axes.
-const PARTS: [&str; 20] = [
-    "finger",
-    "fingers",
-    "fingertip",
-    "handle",
-    "index",
-    "jaw",
-    "knuckle",
-    "little",
-    "middle",
-    "motor",
-    "mover",
-    "pad",
-    "pinky",
-    "ring",
-    "safety",
-    "thumb",
-    "virtual",
-    "x",
-    "y",
-    "z",
-];
+/// Words of the parts of hands that move.
+const FINGERS: [&str; 9] =
+    ["finger", "fingers", "fingertip", "jaw", "knuckle", "mover", "pad", "pinky", "thumb"];
+
+/// Words of joints that move a whole gripper.
+const ROTATIONS: [&str; 7] = ["pitch", "roll", "rotate", "rotation", "turn", "wrist", "yaw"];
+
+/// Words of other parts of hands, and of markers that show axes.
+const PARTS: [&str; 11] =
+    ["handle", "index", "little", "middle", "motor", "ring", "safety", "virtual", "x", "y", "z"];
 
 /// The default tool: a frame, and why.
 pub(super) struct DefaultTool<'a> {
     pub(super) order: &'a TreeOrder,
     pub(super) joints: &'a [JointSpec],
+    pub(super) loops: &'a [LoopJointSpec],
     pub(super) links: &'a BTreeMap<String, usize>,
     /// Links first, then named frames.
     pub(super) frames: &'a [Frame],
@@ -111,6 +104,10 @@ struct Depths {
     above: Vec<(usize, usize)>,
     /// Moving joints of the longest chain below a link, and the rank of its end.
     below: Vec<(usize, usize)>,
+    /// The first link of the rigid body of a link.
+    bodies: Vec<usize>,
+    /// The moving joints that leave the body of its first link: index and child.
+    beyond: Vec<Vec<(usize, usize)>>,
 }
 
 impl DefaultTool<'_> {
@@ -118,6 +115,8 @@ impl DefaultTool<'_> {
     pub(super) fn choose(&self) -> (usize, ToolChoice) {
         let ranks = self.ranks();
         let depths = self.depths(&ranks);
+        let loops = Loops::of(self);
+        let mut ends = vec![None; self.links.len()];
         let longest = depths.above.iter().map(|d| d.0).max().unwrap_or(0);
         let named = self.frames.iter().enumerate().filter_map(|(i, frame)| {
             let meaning = Meaning::of(&frame.name)?;
@@ -128,6 +127,11 @@ impl DefaultTool<'_> {
                 2 * moving >= longest
             };
             if moving == 0 || !enough {
+                return None;
+            }
+            let body = depths.bodies[frame.link];
+            let is_last = || self.ends_a_chain(body, &depths, &loops);
+            if !*ends[body].get_or_insert_with(is_last) {
                 return None;
             }
             let few = usize::MAX;
@@ -166,19 +170,23 @@ impl DefaultTool<'_> {
             children: vec![Vec::new(); n],
             above: vec![(0, 0); n],
             below: (0..n).map(|l| (0, ranks[l])).collect(),
-        };
-        let ends = |j: usize| {
-            let joint = &self.joints[j];
-            (self.links[&joint.parent], self.links[&joint.child])
+            bodies: (0..n).collect(),
+            beyond: vec![Vec::new(); n],
         };
         for &j in &self.order.joints {
-            let (parent, child) = ends(j);
+            let (parent, child) = self.ends(j);
             depths.children[parent].push((j, child));
+            let body = depths.bodies[parent];
+            if depths.moves[j] {
+                depths.beyond[body].push((j, child));
+            } else if self.joints[j].kind.dof() == 0 {
+                depths.bodies[child] = body;
+            }
             let (moving, all) = depths.above[parent];
             depths.above[child] = (moving + usize::from(depths.moves[j]), all + 1);
         }
         for &j in self.order.joints.iter().rev() {
-            let (parent, child) = ends(j);
+            let (parent, child) = self.ends(j);
             let (moving, end) = depths.below[child];
             let through = (moving + usize::from(depths.moves[j]), end);
             if through.0 > 0 {
@@ -186,6 +194,34 @@ impl DefaultTool<'_> {
             }
         }
         depths
+    }
+
+    /// Parent and child of a joint.
+    fn ends(&self, j: usize) -> (usize, usize) {
+        let joint = &self.joints[j];
+        (self.links[&joint.parent], self.links[&joint.child])
+    }
+
+    /// False if a joint moves beyond the body of this first link that belongs neither to a gripper nor to
+    /// a loop through the body.
+    fn ends_a_chain(&self, body: usize, depths: &Depths, loops: &Loops) -> bool {
+        let beyond = &depths.beyond[body];
+        beyond.iter().all(|&(j, child)| {
+            let length = 1 + depths.below[child].0;
+            let in_a_hand = beyond.len() > 1 && length < depths.above[body].0;
+            in_a_hand || loops.pass(body, child) || self.is_finger(j, length)
+        })
+    }
+
+    /// True if the names of a joint and its link are those of a finger, or of the toes of a foot, or
+    /// if the joint is the last one and drives a gripper instead of rotating it.
+    fn is_finger(&self, joint: usize, length: usize) -> bool {
+        let JointSpec { name, child, .. } = &self.joints[joint];
+        let part = |w: String| FINGERS.contains(&w.as_str()) || FEET.contains(&w.as_str());
+        let grips = |w: String| w == "gripper" || GRIPS.contains(&w.as_str());
+        let rotates = |w: String| ROTATIONS.contains(&w.as_str());
+        words(name).chain(words(child)).any(part)
+            || (length == 1 && words(name).any(grips) && !words(name).any(rotates))
     }
 
     fn end_of_chain(&self, depths: &Depths, ranks: &[usize]) -> (usize, ToolChoice) {
@@ -225,6 +261,49 @@ impl DefaultTool<'_> {
     }
 }
 
+/// The loops of a closed chain.
+struct Loops {
+    /// First and last place in the depth-first order of the links below a link, itself included.
+    places: Vec<(usize, usize)>,
+    /// First and last place of the links that loop joints connect with them.
+    partners: Vec<(usize, usize)>,
+}
+
+impl Loops {
+    fn of(tool: &DefaultTool<'_>) -> Self {
+        let n = tool.links.len();
+        let mut loops = Self { places: vec![(0, 0); n], partners: vec![(usize::MAX, 0); n] };
+        for (place, &j) in tool.order.joints.iter().enumerate() {
+            loops.places[tool.ends(j).1] = (place + 1, place + 1);
+        }
+        for joint in tool.loops {
+            // A loop joint on an unknown link is refused elsewhere.
+            let (Some(&a), Some(&b)) = (tool.links.get(&joint.a), tool.links.get(&joint.b)) else {
+                continue;
+            };
+            for (link, other) in [(a, b), (b, a)] {
+                let (first, last) = loops.partners[link];
+                let place = loops.places[other].0;
+                loops.partners[link] = (first.min(place), last.max(place));
+            }
+        }
+        for &j in tool.order.joints.iter().rev() {
+            let (parent, child) = tool.ends(j);
+            for range in [&mut loops.places, &mut loops.partners] {
+                let (first, last) = range[child];
+                range[parent] = (range[parent].0.min(first), range[parent].1.max(last));
+            }
+        }
+        loops
+    }
+
+    /// True if a loop goes through a body and this branch that leaves it.
+    fn pass(&self, body: usize, branch: usize) -> bool {
+        let (first, last) = self.partners[branch];
+        first < self.places[body].0 || last > self.places[body].1
+    }
+}
+
 /// What the name of a frame says.
 struct Meaning {
     /// Index of the group of its best word.
@@ -241,7 +320,7 @@ impl Meaning {
         let (mut others, mut count) = (0, 0);
         for word in words(name) {
             let word = word.as_str();
-            if SENSORS.contains(&word) || PARTS.contains(&word) {
+            if [&SENSORS[..], &FINGERS, &PARTS].iter().any(|words| words.contains(&word)) {
                 return None;
             }
             let group = GROUPS

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use cylindroid::Mechanism;
-use cylindroid::model::{JointKind, JointSpec, ToolChoice, formats};
+use cylindroid::model::{JointKind, JointSpec, LoopJointSpec, ToolChoice, formats};
 
 use crate::{read_toml, robots};
 
@@ -41,6 +41,7 @@ fn tools_of_real_files_are_those_that_are_meant() {
         ("cassie_description/robots/cassie.sdf", "right-foot", Word("foot")),
         ("cassie_description/robots/cassie_reduced.sdf", "right-foot", Word("foot")),
         ("solo_description/robots/solo12.urdf", "HR_FOOT", Word("foot")),
+        ("romeo_description/urdf/romeo_laas_small.urdf", "RArm_effector", Word("effector")),
         ("simple_humanoid_description/urdf/simple_humanoid.urdf", "r_wrist", LongestChain(10)),
         ("allegro_hand_description/urdf/allegro_left_hand.urdf", "link_15.0_tip", LongestChain(4)),
     ] {
@@ -134,6 +135,64 @@ fn without_a_name_it_is_the_end_of_the_longest_chain() {
     let m = chain(&["base", "a", "hand", "finger"], &[]);
     assert_eq!(tool(&m), ("hand", ToolChoice::Word("hand")));
     assert_eq!(m.tool_choice().to_string(), "its name contains 'hand'");
+}
+
+/// Names of axes, couplings and changers in the middle of an arm name no tool.
+#[test]
+fn beyond_a_tool_moves_nothing_but_a_gripper() {
+    use JointKind::{Fixed, Revolute};
+    for name in ["flange1", "tool_changer_axis", "tool0", "hand"] {
+        let m = chain(&["base", "a", name, "b"], &[]);
+        assert_eq!(tool(&m), ("b", ToolChoice::OnlyChain(3)), "{name}");
+        let fixed = [("b", name, Fixed), ("b", "c", Revolute), ("c", "wrist_camera", Fixed)];
+        let m = chain(&["base", "a", "b"], &fixed);
+        assert_eq!(tool(&m), ("c", ToolChoice::OnlyChain(3)), "{name}");
+        let m = chain(&["base", "a", name, "b", "ee"], &[]);
+        assert_eq!(tool(&m), ("ee", ToolChoice::Word("ee")), "{name}");
+        // Two branches as long as the arm before them are no hand.
+        let arms = [(name, "b", Revolute), ("b", "c", Revolute), (name, "d", Revolute)];
+        let m = chain(&["base", "a", name], &arms);
+        assert_eq!(tool(&m).0, "c", "{name}");
+        // Branches of a hand, one finger, toes and the motor of a gripper.
+        let m = chain(&["base", "a", name], &[(name, "b", Revolute), (name, "c", Revolute)]);
+        assert_eq!(tool(&m).0, name);
+        for end in ["moving_jaw", "left_finger", "toe_claw_finger"] {
+            let m = chain(&["base", "a", name, end], &[]);
+            assert_eq!(tool(&m).0, name, "{end}");
+        }
+        for (joint, expected) in [("gripper_joint", name), ("gripper_roll", "gripper")] {
+            let mut b = Mechanism::builder("test");
+            b.joint(JointSpec::new("1", Revolute, "base", "a"));
+            b.joint(JointSpec::new("2", Revolute, "a", name));
+            b.joint(JointSpec::new(joint, Revolute, name, "gripper"));
+            // A hand and a flange are less than a gripper.
+            let less = !name.starts_with("tool");
+            let expected = if less { "gripper" } else { expected };
+            assert_eq!(tool(&b.build().unwrap()).0, expected, "{name} {joint}");
+        }
+    }
+    let m = chain(&["base", "hip", "shin", "left_foot", "left_toe_roll"], &[]);
+    assert_eq!(tool(&m), ("left_foot", ToolChoice::Word("foot")));
+}
+
+/// The tree of a closed chain continues beyond its tool.
+#[test]
+fn the_rest_of_a_loop_is_not_beyond_the_tool() {
+    let closed = |a: &str, b: &str| {
+        let mut builder = Mechanism::builder("test");
+        for pair in ["base", "crank", "tool", "rocker", "rod"].windows(2) {
+            builder.joint(JointSpec::new(pair[1], JointKind::Revolute, pair[0], pair[1]));
+        }
+        builder.loop_joint(LoopJointSpec::new("loop", JointKind::Revolute, a, b));
+        builder.build().unwrap()
+    };
+    for (a, b) in [("rod", "base"), ("crank", "rocker")] {
+        assert_eq!(tool(&closed(a, b)), ("tool", ToolChoice::Word("tool")));
+    }
+    // A loop beyond the frame.
+    for (a, b) in [("tool", "rod"), ("rod", "rocker")] {
+        assert_eq!(tool(&closed(a, b)), ("rod", ToolChoice::OnlyChain(4)));
+    }
 }
 
 /// A frame of the file, or a site of a robot in it, is a reference as well as a link.
