@@ -3,7 +3,7 @@
 use cylindroid::control::{CartesianBounds, CartesianMove};
 use pyo3::prelude::*;
 
-use super::{PyCartesianPath, bounds, times};
+use super::{PyCartesianPath, bounds, check_instant, times};
 use crate::arrays::{self, Array, Numbers};
 use crate::error::{Result, argument};
 use crate::table;
@@ -116,6 +116,13 @@ impl PyCartesianMove {
     /// (ndarray, ndarray)
     ///     The pose at `t`, (4, 4) (m), and the constant twist to the pose at `t + dt`, (6,):
     ///     linear first, world axes, at the moving origin [m/s, rad/s].
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a NaN time.
+    /// InvalidOptionError
+    ///     For a period that is not positive and finite.
     #[pyo3(signature = (t, dt))]
     fn target<'py>(
         &self,
@@ -123,6 +130,7 @@ impl PyCartesianMove {
         #[pyo3(from_py_with = argument)] t: f64,
         #[pyo3(from_py_with = argument)] dt: f64,
     ) -> Result<(Array<'py>, Array<'py>)> {
+        check_instant(t, dt)?;
         let target = self.inner.target(t, dt);
         Ok((arrays::pose(py, target.pose)?, arrays::vector(py, &target.feed_forward.to_array())))
     }

@@ -66,3 +66,11 @@ fn times<'a>(name: &'static str, of: &'a Numbers<'_>) -> Result<(&'a [f64], Opti
     }
     Ok((values, count))
 }
+
+/// Refuses a NaN time, and a period that is not positive.
+fn check_instant(t: f64, dt: f64) -> Result<()> {
+    if t.is_nan() {
+        return Err(Error::NotFinite { what: "t".to_owned(), value: t }.into());
+    }
+    Ok(Error::check_positive("dt", dt)?)
+}

@@ -3,9 +3,9 @@
 use cylindroid::control::{CartesianBounds, WaypointMove};
 use pyo3::prelude::*;
 
-use super::{bounds, times};
+use super::{bounds, check_instant, times};
 use crate::arrays::{self, Array, Numbers};
-use crate::error::{Result, argument};
+use crate::error::{Failure, Result, argument};
 use crate::table;
 
 /// A trajectory through waypoints: straight lines, joined by blends of constant acceleration, from
@@ -19,7 +19,8 @@ use crate::table;
 ///     Times of the waypoints (s), increasing. Default: as fast as the bounds permit.
 /// speed, acceleration : float or (float, float), optional
 ///     Bounds of translation and rotation [m/s, rad/s; m/s^2, rad/s^2]; a single number bounds
-///     translations. Defaults: (0.25, 1), (1, 4). With `times`, speeds follow from them.
+///     translations. Defaults: (0.25, 1), (1, 4). With `times`, speeds follow from them, and
+///     `speed` is refused.
 ///
 /// Attributes
 /// ----------
@@ -31,8 +32,8 @@ use crate::table;
 /// Raises
 /// ------
 /// InvalidOptionError
-///     For fewer than two poses, times that do not increase or are too short, and bounds that are
-///     not positive.
+///     For fewer than two poses, times that do not increase or are too short, both times and a
+///     speed, and bounds that are not positive.
 /// DimensionError, NotFiniteError
 ///
 /// Notes
@@ -56,6 +57,11 @@ impl PyWaypointMove {
     ) -> Result<Self> {
         let (linear, angular) = bounds([&speed, &acceleration, &None], false)?;
         let bounds = CartesianBounds { linear, angular };
+        if let (Some(_), Some(speed)) = (&times, &speed) {
+            let values: Vec<String> = speed.values().iter().map(f64::to_string).collect();
+            let reason = "with times, speeds follow from them; leave one of the two out";
+            return Err(Failure::option("speed", values.join(", "), reason));
+        }
         let poses = poses.poses("poses")?;
         let inner = match &times {
             None => WaypointMove::new(&poses, bounds)?,
@@ -119,6 +125,13 @@ impl PyWaypointMove {
     /// (ndarray, ndarray)
     ///     The pose at `t`, (4, 4) (m), and the constant twist to the pose at `t + dt`, (6,):
     ///     linear first, world axes, at the moving origin [m/s, rad/s].
+    ///
+    /// Raises
+    /// ------
+    /// NotFiniteError
+    ///     For a NaN time.
+    /// InvalidOptionError
+    ///     For a period that is not positive and finite.
     #[pyo3(signature = (t, dt))]
     fn target<'py>(
         &self,
@@ -126,6 +139,7 @@ impl PyWaypointMove {
         #[pyo3(from_py_with = argument)] t: f64,
         #[pyo3(from_py_with = argument)] dt: f64,
     ) -> Result<(Array<'py>, Array<'py>)> {
+        check_instant(t, dt)?;
         let target = self.inner.target(t, dt);
         Ok((arrays::pose(py, target.pose)?, arrays::vector(py, &target.feed_forward.to_array())))
     }

@@ -41,3 +41,4 @@ mod support;
 mod svd;
 mod symmetric_eigen;
 mod theory;
+mod waypoints;

@@ -127,11 +127,15 @@ impl CartesianMove {
 
     /// The target of a servo of period `dt` (s) at time `t` (s): the present pose, and the constant
     /// twist that leads to the pose of the next step. The twist at `t` itself would leave the servo
-    /// behind by acceleration * dt / (2 gain).
+    /// behind by acceleration * dt / (2 gain); it is that of the target without a next step (`dt`
+    /// zero or NaN).
     #[must_use]
     pub fn target(&self, t: f64, dt: f64) -> Target {
-        let pose = self.at(t).pose;
-        Target { pose, feed_forward: pose.error_to(self.at(t + dt).pose) * (1.0 / dt) }
+        let (CartesianSample { pose, twist, .. }, rate) = (self.at(t), 1.0 / dt);
+        if !rate.is_finite() {
+            return Target { pose, feed_forward: twist };
+        }
+        Target { pose, feed_forward: pose.error_to(self.at(t + dt).pose) * rate }
     }
 }
 

@@ -5,16 +5,17 @@
 //! Valid    two poses or more, from rest to rest. The corners of the path are rounded: a waypoint is
 //!          passed at a distance of T |v1 - v0| / 8, T the duration of its blend. Angular accelerations
 //!          are within their bound where |w0 x w1| is at most that bound
-//! Fails    on non-finite input, times that do not increase, times that are too short for the bounds,
-//!          named with the least one
+//! Fails    on non-finite input, times that do not increase or are too short for the accelerations,
+//!          distances, times and bounds that differ by too many orders of magnitude
 //! Why so   a robot need not stop at a waypoint, and the lines between them stay straight; splines
 //!          pass through the waypoints exactly, but swing between them
 //! Source   Craig 2005, section 7.3 (linear function with parabolic blends); Siciliano et al. 2009,
 //!          section 4.2.2
-//! Checked  tests/motion/waypoints.rs
+//! Checked  tests/motion/waypoints.rs, tests/it/waypoints.rs
 
 use super::cartesian_move::CartesianBounds;
 use super::path::CartesianPath;
+use super::time_law::KinematicBounds;
 use crate::control::servo::Target;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
@@ -22,6 +23,8 @@ use crate::tolerance::{ORIENTATION, POSITION};
 
 /// Largest number of rounds in which segments are lengthened until their blends fit.
 const ROUNDS: usize = 200;
+/// Share of the speed that the accelerations permit from which a bound of it counts as none [-].
+const FAR_BEYOND: f64 = 1e3;
 
 /// A frame moving through waypoints without stopping, from rest to rest.
 ///
@@ -72,45 +75,32 @@ struct Knot {
 
 impl WaypointMove {
     /// Through poses with at most the speeds and accelerations of `bounds`; segments are slowed down
-    /// where their blends would not fit. Poses that repeat the one before are left out. The jerk is not bounded: those of `bounds` must be infinite.
+    /// where their blends would not fit. Poses that repeat the last one before are left out. An
+    /// infinite speed is none to keep to. The jerk is not bounded: those of `bounds` must be infinite.
     ///
     /// # Errors
-    /// Fewer than two poses, non-finite poses, bounds that are not positive, a finite jerk.
+    /// Fewer than two poses, non-finite poses, bounds that are not positive, a finite jerk; poses so
+    /// close together that their blends do not fit, of which two are named; a duration that overflows.
     pub fn new(poses: &[Pose], bounds: CartesianBounds) -> Result<Self> {
         check(poses, bounds)?;
-        let poses = &without_repetitions(poses)?[..];
+        let (poses, places) = &without_repetitions(poses)?;
         let ways = ways(poses)?;
-        let mut durations: Vec<f64> = ways
-            .iter()
-            .map(|way| {
-                let linear = way.linear.norm() / bounds.linear.velocity;
-                linear.max(way.angular.norm() / bounds.angular.velocity)
-            })
-            .collect();
-        // A segment holds half of each blend at its ends, and all of those from and to rest.
-        for _ in 0..ROUNDS {
-            let blends = blends(&ways, &durations, bounds);
-            let mut fits = true;
-            for (i, duration) in durations.iter_mut().enumerate() {
-                let needed = 0.5 * (blends[i] + blends[i + 1]);
-                if needed > *duration * (1.0 + 1e-12) {
-                    // Blends shrink while the segment grows: the geometric mean of both.
-                    *duration = (needed * *duration).sqrt().max(*duration * 1.001);
-                    fits = false;
-                }
-            }
-            if fits {
-                let start = 0.5 * blends[0];
-                return Ok(Self::assemble(poses, &ways, &durations, &blends, start));
-            }
+        let [linear, angular] = speeds(&ways, bounds);
+        let over = |way: Vec3, speed: f64| if speed > 0.0 { way.norm() / speed } else { 0.0 };
+        let duration = |way: &Twist| over(way.linear, linear).max(over(way.angular, angular));
+        let mut durations: Vec<f64> = ways.iter().map(duration).collect();
+        match fit(&ways, &mut durations, bounds) {
+            Ok(blends) => Self::assemble(poses, &ways, &durations, &blends, 0.5 * blends[0]),
+            Err(short) => Err(Error::InvalidOption {
+                option: "waypoints",
+                value: format!("{} and {} (0 is the start)", places[short], places[short + 1]),
+                reason: format!(
+                    "{} m apart, they are among the waypoints too close together for their \
+                     blends; leave some out, or permit more acceleration or less speed",
+                    ways[short].linear.norm()
+                ),
+            }),
         }
-        Err(Error::InvalidOption {
-            option: "waypoints",
-            value: format!("{} poses", poses.len()),
-            reason: "their blends do not fit between them; leave out waypoints that are close \
-                     together, or permit more acceleration"
-                .to_owned(),
-        })
     }
 
     /// Through poses at given times (s): it starts at rest at the first time, passes the others in
@@ -133,6 +123,9 @@ impl WaypointMove {
         }
         let ways = ways(poses)?;
         let mut durations: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
+        if let Some(i) = durations.iter().position(|d| d.is_infinite()) {
+            return refuse(i, "the time between them is not finite".to_owned());
+        }
         let last = ways.len() - 1;
         // The blends from and to rest take time of their segments: T (D - T / 2) = |way| / a, or
         // T (D - T) if one segment has both.
@@ -142,8 +135,11 @@ impl WaypointMove {
         let shares = if last == 0 { 1.0 } else { 0.5 };
         let rest = |i: usize| {
             let (linear, angular) = sizes(ways[i], bounds);
-            let root = durations[i] * durations[i] - 4.0 * shares * linear.max(angular);
-            (root >= 0.0).then(|| (durations[i] - root.sqrt()) / (2.0 * shares))
+            let (size, whole) = (linear.max(angular), durations[i]);
+            // The smaller root without differences of large numbers, nor their squares.
+            let least = 2.0 * (shares * size).sqrt();
+            let root = (whole - least).sqrt() * (whole + least).sqrt();
+            (whole >= least).then(|| 2.0 * size / (whole + root))
         };
         let Some(first) = rest(0) else { return too_short(0) };
         let Some(end) = rest(last) else { return too_short(last) };
@@ -157,7 +153,7 @@ impl WaypointMove {
                 return too_short(i);
             }
         }
-        Ok(Self::assemble(poses, &ways, &durations, &blends, 0.5 * first))
+        Self::assemble(poses, &ways, &durations, &blends, 0.5 * first)
     }
 
     fn assemble(
@@ -166,7 +162,7 @@ impl WaypointMove {
         durations: &[f64],
         blends: &[f64],
         start: f64,
-    ) -> Self {
+    ) -> Result<Self> {
         let twist = |i: usize| {
             let moves = durations[i] > 0.0;
             if moves { ways[i] * (1.0 / durations[i]) } else { Twist::ZERO }
@@ -184,7 +180,15 @@ impl WaypointMove {
             time += durations.get(i).unwrap_or(&0.0);
         }
         let duration = time + 0.5 * blends[ways.len()];
-        Self { knots, duration }
+        let is_finite = |k: &Knot| k.blend.is_finite() && k.after.is_finite();
+        if duration.is_finite() && knots.iter().all(is_finite) {
+            return Ok(Self { knots, duration });
+        }
+        Err(Error::InvalidOption {
+            option: "waypoints",
+            value: format!("a duration of {duration} s"),
+            reason: "distances, times and bounds are too many orders of magnitude apart".to_owned(),
+        })
     }
 
     /// Time from rest to rest (s).
@@ -235,11 +239,15 @@ impl WaypointMove {
     }
 
     /// The target of a servo of period `dt` (s) at time `t` (s): the present pose, and the constant
-    /// twist that leads to the pose of the next step.
+    /// twist that leads to the pose of the next step; without a next step (`dt` zero or NaN) the
+    /// twist at `t`.
     #[must_use]
     pub fn target(&self, t: f64, dt: f64) -> Target {
-        let (pose, _) = self.at(t);
-        Target { pose, feed_forward: pose.error_to(self.at(t + dt).0) * (1.0 / dt) }
+        let ((pose, twist), rate) = (self.at(t), 1.0 / dt);
+        if !rate.is_finite() {
+            return Target { pose, feed_forward: twist };
+        }
+        Target { pose, feed_forward: pose.error_to(self.at(t + dt).0) * rate }
     }
 }
 
@@ -251,24 +259,77 @@ fn moved(pose: Pose, way: Twist) -> Pose {
     }
 }
 
-/// The poses without those that repeat the one before; at least the first and one more.
-fn without_repetitions(poses: &[Pose]) -> Result<Vec<Pose>> {
-    let mut kept = vec![poses[0]];
-    for (pose, way) in poses[1..].iter().zip(ways(poses)?) {
+/// The poses without those that repeat the last one before, and their places among all; at least
+/// the first and one more, and the end as given.
+fn without_repetitions(poses: &[Pose]) -> Result<(Vec<Pose>, Vec<usize>)> {
+    let (mut kept, mut places) = (vec![poses[0]], vec![0]);
+    for (i, pose) in poses.iter().enumerate().skip(1) {
+        let way = CartesianPath::line(kept[kept.len() - 1], *pose)?.derivative(0.0);
         if way.linear.norm() > POSITION || way.angular.norm() > ORIENTATION {
             kept.push(*pose);
+            places.push(i);
         }
     }
+    let end = poses.len() - 1;
     if kept.len() == 1 {
-        kept.push(poses[poses.len() - 1]);
+        kept.push(poses[end]);
+        places.push(end);
     }
-    Ok(kept)
+    let last = kept.len() - 1;
+    (kept[last], places[last]) = (poses[end], end);
+    Ok((kept, places))
 }
 
 /// Displacement and rotation vector of every segment, world axes.
 fn ways(poses: &[Pose]) -> Result<Vec<Twist>> {
     let way = |pair: &[Pose]| Ok(CartesianPath::line(pair[0], pair[1])?.derivative(0.0));
     poses.windows(2).map(way).collect()
+}
+
+/// The bounds of both speeds, without those far beyond what is reached from rest on all ways
+/// together.
+fn speeds(ways: &[Twist], bounds: CartesianBounds) -> [f64; 2] {
+    let top = |bounds: KinematicBounds, part: fn(&Twist) -> Vec3| {
+        let length: f64 = ways.iter().map(|way| part(way).norm()).sum();
+        bounds.velocity.min(FAR_BEYOND * bounds.acceleration.sqrt() * length.sqrt())
+    };
+    [top(bounds.linear, |way| way.linear), top(bounds.angular, |way| way.angular)]
+}
+
+/// Lengthens the durations of segments until each holds half of the blends at its ends, and all of
+/// those from and to rest; returns the blends. Otherwise, a segment that is too short.
+fn fit(
+    ways: &[Twist],
+    durations: &mut [f64],
+    bounds: CartesianBounds,
+) -> std::result::Result<Vec<f64>, usize> {
+    let mut blends = blends(ways, durations, bounds);
+    let mut unsettled: Vec<usize> = (0..ways.len()).collect();
+    let mut short = Vec::new();
+    for _ in 0..ROUNDS {
+        short.clear();
+        for &i in &unsettled {
+            let (needed, duration) = (0.5 * (blends[i] + blends[i + 1]), durations[i]);
+            if needed > duration * (1.0 + 1e-12) {
+                // Blends shrink while the segment grows: the geometric mean of both.
+                durations[i] = (needed * duration).sqrt().max(duration * 1.001);
+                short.push(i);
+            }
+        }
+        if short.is_empty() {
+            return Ok(blends);
+        }
+        unsettled.clear();
+        for &i in &short {
+            // Its blends change, and with them the needs of its neighbours.
+            let next = unsettled.last().map_or(0, |last| last + 1);
+            unsettled.extend(next.max(i.saturating_sub(1))..(i + 2).min(ways.len()));
+            for knot in [i, i + 1] {
+                blends[knot] = blend(knot, ways, durations, bounds);
+            }
+        }
+    }
+    Err(short[0])
 }
 
 /// |way| / a of both parts (s^2).
@@ -280,21 +341,21 @@ fn sizes(way: Twist, bounds: CartesianBounds) -> (f64, f64) {
 
 /// The durations of the blends in which no acceleration is exceeded (s).
 fn blends(ways: &[Twist], durations: &[f64], bounds: CartesianBounds) -> Vec<f64> {
+    (0..=ways.len()).map(|i| blend(i, ways, durations, bounds)).collect()
+}
+
+fn blend(i: usize, ways: &[Twist], durations: &[f64], bounds: CartesianBounds) -> f64 {
     let twist = |i: usize| match (ways.get(i), durations.get(i)) {
         (Some(way), Some(d)) if *d > 0.0 => *way * (1.0 / d),
         _ => Twist::ZERO,
     };
-    (0..=ways.len())
-        .map(|i| {
-            let before = if i > 0 { twist(i - 1) } else { Twist::ZERO };
-            let (linear, angular) = sizes(twist(i) - before, bounds);
-            // The axis of the first rotation turns along: at most 3/4 |w0 x w1| more.
-            let turning = 0.75 * before.angular.cross(twist(i).angular).norm();
-            let a = bounds.angular.acceleration;
-            let angular = angular * a / (a - turning).max(0.25 * a);
-            linear.max(angular)
-        })
-        .collect()
+    let before = if i > 0 { twist(i - 1) } else { Twist::ZERO };
+    let (linear, angular) = sizes(twist(i) - before, bounds);
+    // The axis of the first rotation turns along: at most 3/4 |w0 x w1| more.
+    let turning = 0.75 * before.angular.cross(twist(i).angular).norm();
+    let a = bounds.angular.acceleration;
+    let angular = angular * a / (a - turning).max(0.25 * a);
+    linear.max(angular)
 }
 
 fn check(poses: &[Pose], bounds: CartesianBounds) -> Result<()> {
