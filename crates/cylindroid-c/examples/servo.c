@@ -86,6 +86,10 @@ static void closed_chain(void) {
     } while (step.status == CYL_MOVING && ++steps < 5000);
     EXPECT(step.status == CYL_REACHED);
     printf("stewart: reached after %d steps, %.1e m\n", steps, step.position_error);
+    double open[2] = {1.0, 1.0};
+    CHECK(cyl_servo_closure_error(servo, &open[0], &open[1]));
+    EXPECT(open[0] < 1e-9 && open[1] < 1e-9);
+    CHECK(cyl_servo_closure_error(servo, NULL, NULL));
     cyl_servo_free(servo);
     cyl_state_free(state);
     free(velocities);

@@ -128,23 +128,25 @@ typedef struct cyl_servo_options {
   double tolerance_position;
   // Orientation tolerance (rad).
   double tolerance_orientation;
-  // Largest speed of the frame (m/s); infinite for none.
+  // Largest speed of the frame [m/s]; infinite for none.
   double speed_linear;
-  // Largest angular speed (rad/s); infinite for none.
+  // Largest angular speed [rad/s]; infinite for none.
   double speed_angular;
-  // Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
+  // Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; infinite for
+  // none.
   double acceleration;
   // Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3]; infinite for none.
   double jerk;
-  // Time until commands arrive at the drives (s).
+  // Time from a measurement until the drives receive the command computed from it (s).
   double delay;
-  // Time constant of the drives (s).
+  // Time constant with which the drives follow their commands (s).
   double time_constant;
-  // Standard deviation of measured positions [rad or m].
+  // Largest error of measured positions [rad or m]: joints keep this distance from their position
+  // limits.
   double noise;
-  // Time for which a commanded twist holds without a new one (s).
+  // Time for which a commanded twist holds without a new one (s); infinite for no watchdog.
   double command_timeout;
-  // Characteristic length (m).
+  // Characteristic length that scales the linear rows of the Jacobian (m).
   double length;
   // Name of the inverse, as `--inverse` of the command line; null for the default.
   const char *inverse;
@@ -337,6 +339,13 @@ enum cyl_status cyl_servo_reset(struct cyl_servo *servo);
 enum cyl_status cyl_servo_advance(const struct cyl_servo *servo,
                                   double *q,
                                   size_t n);
+
+// How far the loops of a closed chain are open at the configuration of the last step: `distance` (m)
+// and `angle` (rad), zero without loops; near a type II singularity they are not closed. Either may be
+// null. Allocates.
+enum cyl_status cyl_servo_closure_error(const struct cyl_servo *servo,
+                                        double *distance,
+                                        double *angle);
 
 // The kind of reason why the last step made no progress: "singular", "limits", "out of reach", ...
 // Valid until the next call with this servo. Allocates.

@@ -336,6 +336,12 @@ class Servo {
     void advance(Out q) const { check(cyl_servo_advance(handle_.get(), q.sized(n_, "q"), n_)); }
     void reset() { check(cyl_servo_reset(handle_.get())); }
     std::string stall() { return cyl_servo_stall(handle_.get()); }
+    /// How far the loops are open at the configuration of the last step: distance (m), angle (rad).
+    std::array<double, 2> closure_error() const {
+        std::array<double, 2> out;
+        check(cyl_servo_closure_error(handle_.get(), &out[0], &out[1]));
+        return out;
+    }
 
    private:
     std::size_t n_;

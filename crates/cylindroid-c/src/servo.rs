@@ -2,6 +2,7 @@
 
 use std::ffi::{CString, c_char};
 
+use cylindroid::closure::ClosedChain;
 use cylindroid::control::{
     InverseSelection, PoseTolerance, ServoGains, SpeedLimit, Status, Step, Target, TwistStatus,
 };
@@ -39,23 +40,25 @@ pub struct cyl_servo_options {
     pub tolerance_position: f64,
     /// Orientation tolerance (rad).
     pub tolerance_orientation: f64,
-    /// Largest speed of the frame (m/s); infinite for none.
+    /// Largest speed of the frame [m/s]; infinite for none.
     pub speed_linear: f64,
-    /// Largest angular speed (rad/s); infinite for none.
+    /// Largest angular speed [rad/s]; infinite for none.
     pub speed_angular: f64,
-    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; infinite for
+    /// none.
     pub acceleration: f64,
     /// Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3]; infinite for none.
     pub jerk: f64,
-    /// Time until commands arrive at the drives (s).
+    /// Time from a measurement until the drives receive the command computed from it (s).
     pub delay: f64,
-    /// Time constant of the drives (s).
+    /// Time constant with which the drives follow their commands (s).
     pub time_constant: f64,
-    /// Standard deviation of measured positions [rad or m].
+    /// Largest error of measured positions [rad or m]: joints keep this distance from their position
+    /// limits.
     pub noise: f64,
-    /// Time for which a commanded twist holds without a new one (s).
+    /// Time for which a commanded twist holds without a new one (s); infinite for no watchdog.
     pub command_timeout: f64,
-    /// Characteristic length (m).
+    /// Characteristic length that scales the linear rows of the Jacobian (m).
     pub length: f64,
     /// Name of the inverse, as `--inverse` of the command line; null for the default.
     pub inverse: *const c_char,
@@ -324,6 +327,30 @@ pub unsafe extern "C" fn cyl_servo_advance(
         let (servo, q) = unsafe { (handle("servo", servo)?, slice_mut("q", q, n)?) };
         servo.inner.mechanism().check_q("q", q)?;
         servo.inner.advance(q);
+        Ok(())
+    })
+}
+
+/// How far the loops of a closed chain are open at the configuration of the last step: `distance` (m)
+/// and `angle` (rad), zero without loops; near a type II singularity they are not closed. Either may be
+/// null. Allocates.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cyl_servo_closure_error(
+    servo: *const cyl_servo,
+    distance: *mut f64,
+    angle: *mut f64,
+) -> cyl_status {
+    guard(|| {
+        // SAFETY: as the header requires.
+        let servo = &unsafe { handle("servo", servo) }?.inner;
+        let state = servo.mechanism().state(servo.configuration())?;
+        let error = ClosedChain::of(&state, None, None)?.closure_error;
+        for (out, value) in [(distance, error.distance), (angle, error.angle)] {
+            // SAFETY: as the header requires.
+            if let Some(out) = unsafe { out.as_mut() } {
+                *out = value;
+            }
+        }
         Ok(())
     })
 }

@@ -12,6 +12,9 @@ use cylindroid::{Error, Matrix, Result};
 /// The largest file of numbers (bytes): 128 MiB, a million configurations of seven coordinates.
 const LARGEST: u64 = 128 << 20;
 
+/// Longest part of a cell in a message [characters].
+const LONGEST_SHOWN: usize = 40;
+
 /// Rows of a file.
 const MOST_ROWS: usize = 5_000_000;
 
@@ -80,11 +83,18 @@ fn is_parquet(path: &Path) -> bool {
 }
 
 /// The rows of a regular file of at most [`LARGEST`] bytes and [`MOST_ROWS`] rows; CSV unless its
-/// name ends in .json. A first line of CSV that is no numbers names the columns.
+/// name ends in .json. A first line of CSV without any number names the columns.
 pub(crate) fn rows(path: &Path) -> Result<Vec<Row>> {
     let table = table(path)?;
     table.check_numbers(path, |_| true)?;
     Ok(table.rows)
+}
+
+/// The same, with the names of their columns where a first line has them.
+pub(crate) fn named_rows(path: &Path) -> Result<(Option<Vec<String>>, Vec<Row>)> {
+    let table = table(path)?;
+    table.check_numbers(path, |_| true)?;
+    Ok((table.names, table.rows))
 }
 
 fn table(path: &Path) -> Result<Table> {
@@ -219,11 +229,21 @@ fn csv(path: &Path, bytes: &[u8]) -> Result<Table> {
         if rows.len() >= MOST_ROWS {
             return Err(too_many_rows(path));
         }
-        let text = || record.iter().collect::<Vec<_>>().join(",");
-        let message = || format!("line {line} is not all numbers: {}", text());
-        if names.is_none() && record.iter().any(|cell| cell.parse::<f64>().is_err()) {
+        let message = |column: usize, cell: &str| {
+            let cell: String = cell.chars().take(LONGEST_SHOWN).collect();
+            format!("line {line}, column {}: '{cell}' is not a number", column + 1)
+        };
+        let is_number = |cell: &str| cell.parse::<f64>().is_ok();
+        if names.is_none()
+            && let Some(column) = record.iter().position(|cell| !is_number(cell))
+        {
+            let message = message(column, &record[column]);
             if i > 0 {
-                return Err(cannot_read(path, &message()));
+                return Err(cannot_read(path, &message));
+            }
+            if record.iter().any(is_number) {
+                let remedy = "a first line of names alone is a header";
+                return Err(cannot_read(path, &format!("{message}; {remedy}")));
             }
             names = Some(record.iter().map(str::to_owned).collect::<Vec<_>>());
             continue;
@@ -231,7 +251,7 @@ fn csv(path: &Path, bytes: &[u8]) -> Result<Table> {
         let cell = |(column, cell): (usize, &str)| {
             cell.parse().unwrap_or_else(|_| {
                 if words.iter().all(|(known, _)| *known != column) {
-                    words.push((column, message()));
+                    words.push((column, message(column, cell)));
                 }
                 f64::NAN
             })

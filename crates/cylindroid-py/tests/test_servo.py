@@ -221,6 +221,16 @@ def test_paths_and_moves():
     assert abs(timed.duration - 7) < 1e-12 and timed.at(3.0)[1].shape == (6,)
     with pytest.raises(cy.InvalidOptionError, match="5 s to 5.01 s"):
         cy.WaypointMove(way, times=[0, 3, 5, 5.01])
+    with pytest.raises(cy.InvalidOptionError, match="speeds follow from them"):
+        cy.WaypointMove(way, times=[0, 3, 5, 7], speed=0.1)
+    assert np.isfinite(cy.WaypointMove(way, times=[0, 1e300, 2e300, 3e300]).duration)
+    free = cy.WaypointMove(way, speed=np.inf).duration
+    assert abs(free / cy.WaypointMove(way, speed=1e300).duration - 1) < 0.2
+    for moving in (through, move):
+        with pytest.raises(cy.InvalidOptionError, match="dt"):
+            moving.target(0, 0)
+        with pytest.raises(cy.NotFiniteError, match="t is not finite"):
+            moving.target(np.nan, 0.001)
     with pytest.raises(cy.InvalidOptionError, match="poses"):
         cy.WaypointMove(way[0])
     turn = cy.CartesianPath.rotation(start, start[:3, 3] + [0, 0, 0.1], [1, 0, 0], np.pi)
@@ -405,7 +415,9 @@ def test_parallel_robots_are_driven_from_their_actuated_joints():
     assert np.linalg.norm(here[:3, 3] - target[:3, 3]) < 1e-4
     with pytest.raises(cy.DimensionError, match="actuated"):
         servo.step_actuated(measured[:3], target)
-    with pytest.raises(cy.InvalidOptionError, match="loops open by"):
+    assert servo.closure_error.distance < 1e-9 and servo.closure_error.angle < 1e-9
+    assert cy.Servo(cy.load("panda")).closure_error is None
+    with pytest.raises(cy.InvalidOptionError, match="actuated positions = 'leg.*loops open by"):
         servo.step_actuated(measured + [0.9, -0.9, 0.9, -0.9, 0.9, -0.9], target)
 
 
@@ -424,8 +436,9 @@ def test_passive_joints_that_are_measured_too_count():
     assert 1e-5 < servo.configuration[place] - alone[place] < 1e-3
     with pytest.raises(cy.UnknownNameError, match=passive[0]):
         servo.step_actuated(q[actuated], target, sensors={passive[0] + "x": 0.0})
-    with pytest.raises(cy.InvalidOptionError, match="sensors"):
-        servo.step_actuated(q[actuated], target, sensors={five_bar.joint_names[actuated[0]]: 0.0})
+    driven = five_bar.joint_names[actuated[0]]
+    with pytest.raises(cy.InvalidOptionError, match=f"sensors = '{driven}'.* it is actuated"):
+        servo.step_actuated(q[actuated], target, sensors={driven: 0.0})
 
 
 def test_a_servo_that_lags_keeps_limits():

@@ -384,10 +384,16 @@ def test_servo_with_tasks_is_one_of_many():
     assert abs(same.step(BENT)[ROBOT.joint_names.index("left0_joint")]) <= 1e-3
     same.reset()
     np.testing.assert_array_equal(servo.step(BENT), same.step(BENT))
-    for foreign in ({"gain": 2.0}, {"inverse": "damped"}, {"damping": 0.1}, {"task": "pose"}):
-        with pytest.raises(cy.InvalidOptionError, match="servo of one frame"):
+    for foreign, words in [
+        ({"gain": 2.0}, "gain = "),
+        ({"inverse": "damped"}, "inverse = damped"),
+        ({"damping": 0.1}, "damping"),
+        ({"task": "pose"}, "task = pose"),
+        ({"command_timeout": 0.2}, "command_timeout = 0.2"),
+    ]:
+        with pytest.raises(cy.InvalidOptionError, match=f"{words}.*servo of one frame"):
             cy.Servo(ROBOT, tasks=[hand], **foreign)
-    with pytest.raises(cy.InvalidOptionError, match="needs tasks"):
+    with pytest.raises(cy.InvalidOptionError, match="collisions = .*needs tasks"):
         cy.Servo(ROBOT, collisions=cy.CollisionAvoidance(model))
 
 

@@ -190,7 +190,9 @@ pub(crate) struct PathArgs {
     pub(crate) joint_to: Option<Joints>,
 
     /// Move through the poses of a file without stopping, from the start to the last one: rows
-    /// `x,y,z` or `x,y,z,qw,qx,qy,qz` [m], with a time [s] before them if they have one
+    /// `x,y,z` or `x,y,z,qw,qx,qy,qz` [m], with a time [s] before them if they have one. A header
+    /// may name the columns, in any order: `time` (or `t`), `x`, `y`, `z`, and `qw`, `qx`, `qy`,
+    /// `qz` or `roll`, `pitch`, `yaw` [rad]
     #[arg(long, value_name = "FILE.csv")]
     #[arg(conflicts_with_all = ["to", "orientation", "line", "via", "joint_to"])]
     pub(crate) waypoints: Option<PathBuf>,
@@ -209,13 +211,14 @@ pub(crate) struct PathArgs {
     #[arg(long, value_name = "LAW", default_value = "trapezoidal")]
     pub(crate) law: LawName,
 
-    /// Acceleration on the path [m/s^2]
-    #[arg(long, value_name = "A", default_value_t = 1.0, allow_hyphen_values = true)]
-    pub(crate) acceleration_linear: f64,
+    /// Acceleration on the path, and of sliding joints without a limit [m/s^2] [default: 1]
+    #[arg(long, value_name = "A", allow_hyphen_values = true)]
+    pub(crate) acceleration_linear: Option<f64>,
 
-    /// Angular acceleration on the path [rad/s^2]
-    #[arg(long, value_name = "A", default_value_t = 4.0, allow_hyphen_values = true)]
-    pub(crate) acceleration_angular: f64,
+    /// Angular acceleration on the path, and of rotating joints without a limit [rad/s^2]
+    /// [default: 4]
+    #[arg(long, value_name = "A", allow_hyphen_values = true)]
+    pub(crate) acceleration_angular: Option<f64>,
 
     /// Jerk on the path with the law jerk-limited [m/s^3] [default: 10]
     #[arg(long, value_name = "J", allow_hyphen_values = true)]

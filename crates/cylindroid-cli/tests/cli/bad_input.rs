@@ -46,6 +46,14 @@ fn targets_must_be_finite_and_complete() {
     refused_move(&["--rpy", "0,0,inf"], "--rpy[2] is not finite");
     refused_move(&["--rpy", "0,0,0", "--rotation-vector", "0,0,0"], "cannot be used with");
     refused_move(&["--line", "--via", "0,0,1"], "cannot be used with");
+    let twist = ["move", "ur5e", "--twist", "1e308,0,0,0,0,0"];
+    let plane = ["move", "five-bar", "--twist", "0,0.1,-5,0,0,0"];
+    refused(&plane, "the task has no z, but x, y, rz");
+    let position = ["move", "panda", "--task", "position", "--twist", "0,0,0.1,0,0,1"];
+    refused(&position, "rz = 1 cannot be used: the task has no rz");
+    let to = ["move", "five-bar", "--to", "0.1,0.4,5"];
+    refused(&to, "--to = z = 5 m cannot be used: 'five-bar' moves in the plane z = 0 m");
+    refused(&twist, "--twist[0] = 1e308 is out of range: magnitudes up to 1e120 are accepted");
 }
 
 #[test]

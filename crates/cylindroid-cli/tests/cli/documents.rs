@@ -132,6 +132,7 @@ fn printing(command: &str) -> Vec<Vec<&'static str>> {
         ],
         "move" => vec![
             with(&["panda", "--line"], &UP),
+            vec!["ur5e", "--twist", "0,0,0.1,0,0,0"],
             vec!["puma560", "--to", "-0.5,0.2,0.3"],
             vec!["puma560", "--to", "-0.5,0.2,0.3", "--no-reconfigure"],
             vec!["five-bar", "--to", "1.2,1.8,0"],

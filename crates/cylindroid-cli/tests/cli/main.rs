@@ -27,6 +27,7 @@ mod statics;
 mod sweep;
 mod tasks;
 mod view;
+mod waypoints;
 mod xacro;
 mod zone;
 

@@ -185,7 +185,8 @@ fn a_robot_that_lags_arrives_later() {
     let plant = ["--delay", "0.02", "--time-constant", "0.06"];
     let later = time(&plant) - ideal;
     assert!(later > 0.05 && later < 2.0, "{later}");
-    time(&[&plant[..], &["--noise", "1e-5", "--tolerance-position", "1e-3"]].concat());
+    let noise = ["--noise", "1e-5", "--tolerance-position", "1e-3"];
+    time(&[&plant[..], &noise, &["--tolerance-orientation", "1e-3"]].concat());
     for flag in ["--delay", "--time-constant", "--noise"] {
         let message = refused(&[&command[..], &[flag, "-1"]].concat());
         assert!(message.contains(flag), "{message}");
@@ -291,6 +292,31 @@ fn a_twist_is_followed_for_a_time() {
         assert_eq!(output.status.code(), Some(2));
         assert!(String::from_utf8_lossy(&output.stderr).contains(expected), "{output:?}");
     }
+}
+
+/// Beyond the speeds of the joints, or for a short time: a twist that is done in part is not followed.
+#[test]
+fn a_twist_beyond_the_limits_says_what_is_missing() {
+    for twist in [
+        &["panda", "--twist", "0,0,-5,0,0,0"][..],
+        &["ur5e", "--twist", "0,0,-5,0,0,0"],
+        &["stewart", "--twist", "0,0,-5,0,0,0", "--duration", "0.1"],
+        &["panda", "--twist", "0,0,-0.1,0,0,0", "--speed", "0.05"],
+    ] {
+        let command = [&["move"], twist].concat();
+        let report = json(&command, 1);
+        let followed = report["followed"].as_f64().unwrap();
+        assert!(report["reached"] == false && followed < 0.95, "{twist:?}: {report}");
+        if report["reason"] == "slowed" {
+            assert!(report["explanation"].as_str().unwrap().contains("a slower twist"), "{report}");
+        }
+        let table = String::from_utf8(cylindroid(&command).stdout).unwrap();
+        assert!(table.contains("twist not followed"), "{table}");
+    }
+    // A weak arm makes up while it brakes for what it lacks while it accelerates.
+    let weak = ["move", "panda", "--twist", "0,0,-0.1,0,0,0", "--acceleration", "1"];
+    let report = json(&weak, 0);
+    assert!((report["followed"].as_f64().unwrap() - 1.0).abs() < 0.05, "{report}");
 }
 
 #[test]

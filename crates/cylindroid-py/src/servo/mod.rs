@@ -123,6 +123,8 @@ pub(crate) use trajectory::PyTrajectory;
 ///     Of the last step; actuated and passive ones in a closed chain [rad/s or m/s].
 /// configuration : ndarray, (n,)
 ///     Of the last step, its loops closed [rad or m].
+/// closure_error : LoopClosureError or None
+///     How far the loops are open there; None without loops.
 /// loop_closure_velocities : ndarray
 ///     Velocities of actuated loop-closure joints.
 /// active_limits : list of (str, str)
@@ -254,27 +256,34 @@ impl PyServo {
         let robot = &limited;
         let plant = options::plant(delay, time_constant, noise);
         if let Some(tasks) = tasks {
+            let number = |x: Option<f64>| x.map(|x| x.to_string());
+            let array = |is_given: bool| is_given.then(|| "...".to_owned());
+            let object = |x: &Option<Bound<'_, PyAny>>| x.as_ref().map(ToString::to_string);
+            let name = |x: &str| x.to_owned();
             let foreign = [
-                ("frame", frame.is_some()),
-                ("gain", gain.is_some()),
-                ("tool", tool.is_some()),
-                ("tolerance_position", tolerance_position.is_some()),
-                ("tolerance_orientation", tolerance_orientation.is_some()),
-                ("speed", speed.is_some()),
-                ("command_timeout", command_timeout.is_some()),
-                ("secondary", secondary.is_some()),
-                ("posture", posture.is_some()),
-                ("null_space", null_space != "exact"),
-                ("task", task.is_some()),
-                ("task_axes", task_axes.is_some()),
-                ("inverse", inverse != "truncated"),
-                ("give_up", give_up.is_some()),
-                ("fallback", fallback.is_some()),
-                ("parameters", parameters.is_some_and(|p| !p.is_empty())),
+                ("frame", frame.map(name)),
+                ("gain", array(gain.is_some())),
+                ("tool", array(tool.is_some())),
+                ("tolerance_position", number(tolerance_position)),
+                ("tolerance_orientation", number(tolerance_orientation)),
+                ("speed", array(speed.is_some())),
+                ("command_timeout", number(command_timeout)),
+                ("secondary", object(&secondary)),
+                ("posture", array(posture.is_some())),
+                ("null_space", (null_space != "exact").then(|| name(null_space))),
+                ("task", task.map(name)),
+                ("task_axes", task_axes.map(name)),
+                ("inverse", (inverse != "truncated").then(|| name(inverse))),
+                ("give_up", object(&give_up)),
+                ("fallback", fallback.map(name)),
+                ("parameters", parameters.filter(|p| !p.is_empty()).map(ToString::to_string)),
             ];
-            if let Some((name, _)) = foreign.into_iter().find(|(_, given)| *given) {
-                let reason = "it belongs to a servo of one frame; give it to the tasks or omit it";
-                return Err(Failure::option(name, "", reason));
+            for (option, value) in foreign {
+                if let Some(value) = value {
+                    let reason = "it belongs to a servo of one frame: omit it, or omit tasks, which \
+                                  have frames, gains and tolerances of their own";
+                    return Err(Failure::option(option, value, reason));
+                }
             }
             let weights = match joint_weights {
                 None => None,
@@ -292,7 +301,7 @@ impl PyServo {
             return Ok(Bound::new(py, servo)?.into_any());
         }
         if collisions.is_some() {
-            return Err(Failure::option("collisions", "", "it needs tasks, as in TaskServo"));
+            return Err(Failure::option("collisions", "...", "it needs tasks, as in TaskServo"));
         }
         let mut options = ServoOptions::new(robot);
         if let Some(name) = frame {

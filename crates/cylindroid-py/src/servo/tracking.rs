@@ -5,10 +5,12 @@
 use std::collections::BTreeMap;
 
 use cylindroid::Error;
+use cylindroid::closure::ClosedChain;
 use pyo3::prelude::*;
 
 use super::{PyServo, moving_target};
 use crate::arrays::{self, Array, Numbers};
+use crate::closed::PyLoopClosureError;
 use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
 
@@ -99,6 +101,19 @@ impl PyServo {
         running.servo.start_from(q)?;
         running.last = None;
         Ok(())
+    }
+
+    /// How far the loops of a closed chain are open at `configuration`: rounding, and more near a
+    /// type II singularity, where no step closes them; None without loops.
+    #[getter]
+    fn closure_error(&self) -> Result<Option<PyLoopClosureError>> {
+        let servo = &self.lock()?.servo;
+        let robot = servo.mechanism();
+        if !robot.is_closed() {
+            return Ok(None);
+        }
+        let chain = ClosedChain::of(&robot.state(servo.configuration())?, None, None)?;
+        Ok(Some(chain.closure_error.into()))
     }
 
     /// The configuration of the last step, its loops closed [rad or m], (n,).

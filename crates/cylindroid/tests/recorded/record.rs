@@ -54,7 +54,7 @@ fn agree(a: &str, b: &str, tolerance: f64) -> bool {
     if a == b {
         return true;
     }
-    let number = |word: &str| word.contains(['e']).then(|| word.parse::<f64>().ok()).flatten();
+    let number = |word: &str| word.contains('e').then(|| word.parse::<f64>().ok()).flatten();
     match (number(a), number(b)) {
         (Some(a), Some(b)) => (a - b).abs() <= tolerance * b.abs().max(1.0),
         _ => false,

@@ -7,6 +7,8 @@ use crate::args::{LawName, MoveArgs, PathArgs};
 
 /// Speeds on a path where none are given [m/s], [rad/s].
 const PATH_SPEED: (f64, f64) = (0.25, 1.0);
+/// Accelerations on a path where none are given [m/s^2], [rad/s^2].
+const PATH_ACCELERATION: (f64, f64) = (1.0, 4.0);
 /// Jerks on a path where none are given [m/s^3], [rad/s^3].
 const PATH_JERK: (f64, f64) = (10.0, 40.0);
 
@@ -45,12 +47,12 @@ pub(super) fn joint_defaults(args: &MoveArgs) -> JointDefaults {
     JointDefaults {
         angle: KinematicBounds {
             velocity: PATH_SPEED.1,
-            acceleration: acceleration(path.acceleration_angular),
+            acceleration: acceleration(path.acceleration_angular.unwrap_or(PATH_ACCELERATION.1)),
             jerk: jerk_angular,
         },
         length: KinematicBounds {
             velocity: PATH_SPEED.0,
-            acceleration: acceleration(path.acceleration_linear),
+            acceleration: acceleration(path.acceleration_linear.unwrap_or(PATH_ACCELERATION.0)),
             jerk: jerk_linear,
         },
     }
@@ -62,12 +64,12 @@ pub(super) fn path_bounds(args: &MoveArgs) -> CartesianBounds {
     CartesianBounds {
         linear: KinematicBounds {
             velocity: speed.map_or(PATH_SPEED.0, |s| s.linear),
-            acceleration: path.acceleration_linear,
+            acceleration: path.acceleration_linear.unwrap_or(PATH_ACCELERATION.0),
             jerk: jerk_linear,
         },
         angular: KinematicBounds {
             velocity: speed.and_then(|s| s.angular).unwrap_or(PATH_SPEED.1),
-            acceleration: path.acceleration_angular,
+            acceleration: path.acceleration_angular.unwrap_or(PATH_ACCELERATION.1),
             jerk: jerk_angular,
         },
     }

@@ -4,14 +4,14 @@ use cylindroid::control::{
     CartesianMove, CartesianPath, JointDefaults, JointMove, SecondaryNullSpace, SecondaryTask,
     ServoGains, WaypointMove,
 };
-use cylindroid::model::Mechanism;
-use cylindroid::{Error, Pose, Result, ServoOptions, Vec3};
+use cylindroid::model::{Dimension, Mechanism};
+use cylindroid::{Error, Pose, Result, ServoOptions, Vec3, tolerance};
 
 use super::super::target::{target_pose, task};
 use super::bounds::{check_jerks, joint_defaults, path_bounds};
-use super::inverse;
 use super::twist_goal::TwistGoal;
 use super::waypoints::Waypoints;
+use super::{idle, inverse};
 use crate::args::{MoveArgs, NullSpaceName, PathArgs, ServoArgs};
 use crate::commands::shared::{
     all_actuated, configuration, end_effector, limited, load, within_limits,
@@ -68,7 +68,9 @@ impl Job {
 
         let mut options = ServoOptions::new(&robot);
         options.end_effector = end_effector(&robot, &args.frame)?;
-        let waypoints = args.path.waypoints.as_deref().map(Waypoints::read).transpose()?;
+        let waypoints = args.path.waypoints.as_deref();
+        let waypoints = waypoints.map(|path| Waypoints::read(path, degrees)).transpose()?;
+        idle::refuse(args, waypoints.as_ref().is_some_and(Waypoints::are_timed))?;
         let given = waypoints.as_ref().map(|w| [true, w.orientations]);
         let (task, controlled) = task(&args.target, given, &robot)?;
         options.task = task;
@@ -94,7 +96,7 @@ impl Job {
             let motion = waypoints.motion(from, path_bounds(args), &args.path)?;
             let to = motion.at(f64::INFINITY).0;
             (to, Goal::Waypoints(Box::new(motion)), controlled)
-        } else if let Some(twist) = TwistGoal::of(&args.path)? {
+        } else if let Some(twist) = TwistGoal::of(&args.path, task)? {
             (twist.end(from, options.task.axes), Goal::Twist(twist), controlled)
         } else {
             let to = target_pose(
@@ -103,6 +105,7 @@ impl Job {
                 degrees,
                 ", or with --joint-to q, --waypoints or --twist",
             )?;
+            stays_in_plane(&robot, from, to)?;
             let path = path(&args.path, from, to)?;
             let goal = match path {
                 None => Goal::Pose(to),
@@ -234,4 +237,18 @@ fn path(args: &PathArgs, from: Pose, to: Pose) -> Result<Option<CartesianPath>> 
         return CartesianPath::circle(from, Vec3::from_array(via.0), to).map(Some);
     }
     if args.line { CartesianPath::line(from, to).map(Some) } else { Ok(None) }
+}
+
+/// Targets of a planar chain lie in its plane.
+fn stays_in_plane(robot: &Mechanism, from: Pose, to: Pose) -> Result<()> {
+    let most = tolerance::POSITION.max(1e-9 * robot.reach());
+    let (z, plane) = (to.translation.z, from.translation.z);
+    if !robot.is_closed() || robot.dimension() != Dimension::Planar || (z - plane).abs() <= most {
+        return Ok(());
+    }
+    Err(Error::InvalidOption {
+        option: "--to",
+        value: format!("z = {z} m"),
+        reason: format!("'{}' moves in the plane z = {plane} m", robot.name()),
+    })
 }

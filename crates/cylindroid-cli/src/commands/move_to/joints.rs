@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use cylindroid::control::{JointMove, JointSample, LimitKind, MotionResult, TrajectorySample};
+use cylindroid::control::{
+    self, JointMove, JointSample, LimitKind, MotionResult, Plant, Target, TrajectorySample,
+};
 use cylindroid::{Result, Servo};
 
 use super::job::Job;
@@ -55,8 +57,37 @@ pub(super) fn simulate(
                 limits_hit,
                 no_inverse: None,
                 steps_without_inverse: 0,
+                followed: None,
             });
         }
         steps += 1;
     }
+}
+
+/// The same, and where the robot is not ideal the servo at its end: it decides whether this robot
+/// reaches the target. The joint motion is that of an ideal one.
+pub(super) fn simulate_with_plant(
+    servo: &mut Servo,
+    job: &Job,
+    motion: &JointMove,
+    mut observe: impl FnMut(TrajectorySample<'_>),
+) -> Result<MotionResult> {
+    let joints = simulate(servo, job, motion, &mut observe)?;
+    if job.options.plant == Plant::IDEAL || !joints.reached {
+        return Ok(joints);
+    }
+    servo.reset();
+    let begin = joints.time + job.options.dt;
+    let target = |_| (Target::from(job.target_pose), true);
+    let observe = |sample: TrajectorySample<'_>| {
+        observe(TrajectorySample { time: begin + sample.time, ..sample });
+    };
+    let end = control::simulate(servo, &joints.q, job.time_limit - begin, target, observe)?;
+    Ok(MotionResult {
+        steps: joints.steps + 1 + end.steps,
+        time: begin + end.time,
+        min_singular_ratio: joints.min_singular_ratio.min(end.min_singular_ratio),
+        limits_hit: &joints.limits_hit | &end.limits_hit,
+        ..end
+    })
 }

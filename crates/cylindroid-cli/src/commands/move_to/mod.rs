@@ -1,6 +1,7 @@
 //! `move`: moves a frame to a target and reports whether and how it was reached.
 
 mod bounds;
+mod idle;
 pub(crate) mod inverse;
 mod job;
 mod joints;
@@ -9,6 +10,7 @@ pub(crate) mod sentences;
 mod tasks;
 mod twist;
 mod twist_goal;
+mod waypoint_columns;
 mod waypoints;
 
 use std::io::Write;
@@ -136,7 +138,7 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
             trajectory.push(&sample);
         }
     };
-    let outcome_of_joints = joints::simulate(&mut servo, job, &motion, push)?;
+    let outcome_of_joints = joints::simulate_with_plant(&mut servo, job, &motion, push)?;
     Ok(Result {
         outcome: outcome_of_joints,
         deviation: None,

@@ -76,6 +76,9 @@ struct MoveJson<'a> {
     time: f64,
     /// The largest time that the tool was behind a moving target (s).
     largest_lag: f64,
+    /// The share of a twist's motion that the tool made.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    followed: Option<f64>,
     /// Smallest on the way.
     min_singular_ratio: f64,
     /// Divides the linear rows for the singular values [m].
@@ -170,6 +173,7 @@ fn describe<'a>(job: &'a Job, result: &'a Result) -> MoveJson<'a> {
         steps: outcome.steps,
         time: outcome.time,
         largest_lag: outcome.largest_lag,
+        followed: outcome.followed,
         min_singular_ratio: outcome.min_singular_ratio,
         length: options.length,
         limits_hit: outcome
@@ -212,10 +216,10 @@ fn actuated_joints(job: &Job) -> Vec<&str> {
     tree.chain(loop_closure).collect()
 }
 
-fn result_word(job: &Job, outcome: &MotionResult, way: &Way) -> &'static str {
+fn result_word(outcome: &MotionResult, way: &Way) -> &'static str {
     match (outcome.reached, way) {
-        (true, _) if matches!(job.goal, Goal::Twist(_)) => "twist followed",
-        (false, _) if matches!(job.goal, Goal::Twist(_)) => "twist not followed",
+        (true, _) if outcome.followed.is_some() => "twist followed",
+        (false, _) if outcome.followed.is_some() => "twist not followed",
         (true, Way::Reconfigured { .. }) => "reached, after reconfiguration",
         (true, _) => "reached",
         (false, _) => "not reached",
@@ -253,7 +257,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
                 "by",
                 if job.robot.is_closed() { actuated_joints(job).join(", ") } else { String::new() },
             ),
-            ("result", result_word(job, outcome, way).to_owned()),
+            ("result", result_word(outcome, way).to_owned()),
             (
                 "reason",
                 match way {

@@ -1,17 +1,19 @@
 //! The end of a motion in full sentences: the cause, with names and values, and the remedy.
 
 use cylindroid::ReferenceFrame;
-use cylindroid::control::{MotionResult, Stall, Task};
+use cylindroid::control::{MotionResult, Plant, Stall, Task};
 use cylindroid::model::Mechanism;
 
 use super::job::{Goal, Job};
+use super::report::limits_met;
 use crate::output::number;
 
-/// The cause as one word: "reached", a [`Stall::name`], or "time-limit".
+/// The cause as one word: "reached", a [`Stall::name`], "slowed" of a twist, or "time-limit".
 pub(super) fn reason(outcome: &MotionResult) -> &'static str {
     match &outcome.stall {
         _ if outcome.reached => "reached",
         Some(stall) => stall.name(),
+        None if outcome.is_slowed() => "slowed",
         None => "time-limit",
     }
 }
@@ -42,10 +44,17 @@ pub(super) fn reconfigured(job: &Job, stalled: &MotionResult) -> String {
     if components[3..].contains(&true) {
         left.push(format!("{} rad", number(stalled.last.orientation_error)));
     }
+    let ideal = match job.options.plant {
+        Plant::IDEAL => "",
+        _ => {
+            " The joint motion is that of an ideal robot; delay, time constant and noise act on the \
+             servo at its end."
+        }
+    };
     format!(
         "Moving straight towards the target, the servo would stall {} before it, {what}. The robot \
          reconfigured instead: every joint moved straight to another configuration that reaches \
-         the target (--no-reconfigure keeps the motion of the servo).",
+         the target (--no-reconfigure keeps the motion of the servo).{ideal}",
         left.join(" and "),
     )
 }
@@ -64,6 +73,12 @@ pub(super) fn explanation(
             };
             return format!("{end}{}", without_inverse(outcome));
         }
+        None if outcome.is_slowed() => format!(
+            "The tool made {} % of the motion that the twist asks for: limits slowed it ({}). Command \
+             a slower twist, for a longer time (--duration).",
+            number(100.0 * outcome.followed.unwrap_or_default()),
+            limits_met(&job.robot, &outcome.limits_hit)
+        ),
         None => format!(
             "The time limit of {} s ran out before the target was reached; allow more with \
              --time-limit, or move faster (--gain, --speed).",
@@ -74,6 +89,14 @@ pub(super) fn explanation(
             format!("{cause} {}", way_out(stall)).trim_end().to_owned()
         }
     };
+    let noise = job.options.plant.noise;
+    if noise > 0.0 && matches!(outcome.stall, Some(Stall::Slow)) {
+        text.push_str(&format!(
+            " Encoders with errors of {} may not let it nearer (--noise): accept that with \
+             --tolerance-position and --tolerance-orientation.",
+            number(noise)
+        ));
+    }
     text.push_str(&without_inverse(outcome));
     if let Some(q) = other_configuration {
         text.push_str(&format!(

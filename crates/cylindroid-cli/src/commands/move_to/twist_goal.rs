@@ -1,6 +1,8 @@
 //! The twist that `move --twist` follows.
 
+use cylindroid::control::Task;
 use cylindroid::spatial::{Twist, exp};
+use cylindroid::tolerance::MAX_MAGNITUDE;
 use cylindroid::{Error, Pose, ReferenceFrame, Result, Rotation};
 
 use crate::args::PathArgs;
@@ -15,9 +17,26 @@ pub(super) struct TwistGoal {
 }
 
 impl TwistGoal {
-    pub(super) fn of(args: &PathArgs) -> Result<Option<Self>> {
+    /// `--twist`, whose parts are all components of the task.
+    pub(super) fn of(args: &PathArgs, task: Task) -> Result<Option<Self>> {
         let Some(twist) = args.twist else { return Ok(None) };
-        Error::check_finite("--twist", &twist.0)?;
+        Error::check_within("--twist", &twist.0, MAX_MAGNITUDE)?;
+        let names = Task::COMPONENTS.iter().zip(task.components);
+        if let Some(((name, _), x)) =
+            names.clone().zip(twist.0).find(|((_, on), x)| !on && *x != 0.0)
+        {
+            let controlled: Vec<&str> =
+                names.filter(|(_, on)| *on).map(|(name, _)| *name).collect();
+            return Err(Error::InvalidOption {
+                option: "--twist",
+                value: format!("{name} = {x}"),
+                reason: format!(
+                    "the task has no {name}, but {}; set it to zero, or name it in --task if the \
+                     mechanism moves so",
+                    controlled.join(", ")
+                ),
+            });
+        }
         let duration = args.duration.unwrap_or(1.0);
         Error::check_positive("--duration", duration)?;
         Ok(Some(Self { twist: Twist::from_array(twist.0), duration }))

@@ -11,6 +11,9 @@ use crate::error::Result;
 use crate::screws::NoInverse;
 use crate::spatial::Twist;
 
+/// Share of the motion of a twist that may be missing where it counts as followed [-].
+const NOT_FOLLOWED: f64 = 0.05;
+
 /// One instant of a motion.
 #[derive(Debug)]
 pub struct TrajectorySample<'a> {
@@ -29,7 +32,7 @@ pub struct TrajectorySample<'a> {
 /// The result of a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionResult {
-    /// True if the target was reached.
+    /// True if the target was reached; of twists, if the tool made 95 % of their motion at least, and rests.
     pub reached: bool,
     /// The reason of a stall; `None` if the target was reached or the time ran out.
     pub stall: Option<Stall>,
@@ -51,6 +54,17 @@ pub struct MotionResult {
     pub no_inverse: Option<NoInverse>,
     /// Number of such steps, performed by the fallback if one was given.
     pub steps_without_inverse: usize,
+    /// Of twists the share of their motion that the tool made, while they were commanded and until it
+    /// stopped: below 1 where limits slowed it.
+    pub followed: Option<f64>,
+}
+
+impl MotionResult {
+    /// True for a twist of whose motion more than 5 % is missing.
+    #[must_use]
+    pub fn is_slowed(&self) -> bool {
+        self.followed.is_some_and(|share| share < 1.0 - NOT_FOLLOWED)
+    }
 }
 
 /// Steps `servo` from `q`, with a robot as [`ServoOptions::plant`](crate::ServoOptions::plant)
@@ -105,7 +119,7 @@ pub fn simulate(
 
 /// The same in velocity mode: follows the twist that `command` gives for a time (s) and a
 /// configuration, world axes, at the tool. `None` is the end: the joints brake, and the motion is
-/// complete at rest. It ends early at a stall, and after `duration` (s).
+/// over at rest. It ends early at a stall, and after `duration` (s).
 ///
 /// ```
 /// use cylindroid::control::simulate_twist;
@@ -132,15 +146,26 @@ pub fn simulate_twist(
 ) -> Result<MotionResult> {
     servo.mechanism().check_q("q", q)?;
     let mut run = Run::new(servo, q);
+    let length = run.servo.options().length;
+    let product =
+        |a: Twist, b: Twist| a.linear.dot(b.linear) / (length * length) + a.angular.dot(b.angular);
+    let (mut last, mut made, mut whole) = (Twist::ZERO, 0.0, 0.0);
     loop {
         let time = run.time();
         let twist = command(time, run.robot.q())?;
         let now = run.servo.step_twist(run.robot.measure(), Some(twist.unwrap_or(Twist::ZERO)))?;
         run.note(now.step, &mut observe);
+        // What the tool lacks while the joints accelerate, it makes while they brake.
+        last = twist.unwrap_or(last);
+        made += product(now.achieved, last);
+        whole += twist.map_or(0.0, |twist| product(twist, twist));
+        let followed = if whole > 0.0 { made / whole } else { 1.0 };
+        run.followed = Some(followed);
         let stalled = now.status == TwistStatus::Stalled;
-        let reached = twist.is_none() && now.status == TwistStatus::AtRest;
+        let is_over = twist.is_none() && now.status == TwistStatus::AtRest;
+        let reached = is_over && followed >= 1.0 - NOT_FOLLOWED;
         let in_time = time < duration; // NaN is not
-        if reached || stalled || !in_time {
+        if is_over || stalled || !in_time {
             return Ok(run.end(now.step, reached, stalled));
         }
         run.advance();
@@ -158,6 +183,7 @@ struct Run<'a> {
     limits_hit: BTreeSet<(usize, LimitKind)>,
     no_inverse: Option<NoInverse>,
     steps_without_inverse: usize,
+    followed: Option<f64>,
 }
 
 impl<'a> Run<'a> {
@@ -173,6 +199,7 @@ impl<'a> Run<'a> {
             limits_hit: BTreeSet::new(),
             no_inverse: None,
             steps_without_inverse: 0,
+            followed: None,
         }
     }
 
@@ -219,6 +246,7 @@ impl<'a> Run<'a> {
             limits_hit: self.limits_hit,
             no_inverse: self.no_inverse,
             steps_without_inverse: self.steps_without_inverse,
+            followed: self.followed,
         }
     }
 }

@@ -2,10 +2,12 @@
 //!
 //! Formula  v, a: the twists of the target and of the tool, means over the last `WINDOW` seconds,
 //!          exponentially weighted; v is fed forward, or the difference of successive targets.
-//!          lag = <e, v> / |v|^2; stalled where a is below `FOLLOWED` |v| along v and along e for
+//!          lag = <e, v> / |v| s, s the largest |v| of the last second or so, and at most the time since the
+//!          target began to move; stalled where a is below `FOLLOWED` |v| along v and along e for
 //!          `PATIENCE` seconds in which no joint accelerates at its limit
 //! Shapes   e, v, a: m            Units    scaled task coordinates, s
-//! Why so   the tool's motion is that between steps: at a singularity J q' points outwards while the arm
+//! Why so   over the present speed, the lag of a target that comes to rest would grow beyond bounds. The
+//!          tool's motion is that between steps: at a singularity J q' points outwards while the arm
 //!          swings to and fro. The error of a target that moves away says nothing about progress, and a
 //!          tool at the edge of its workspace that moves along with the target is as near as it can be
 //! Checked  tests/it/servo/moving.rs
@@ -16,6 +18,8 @@ use crate::spatial::Pose;
 
 /// Time constant of the means (s), and time at rest from which a target is fixed.
 const WINDOW: f64 = 0.25;
+/// Time constant with which the largest speed is forgotten (s).
+const MEMORY: f64 = 1.0;
 /// Share of the target's speed below which the tool neither follows nor approaches [-].
 const FOLLOWED: f64 = 0.1;
 /// Scaled errors below this are rounding, without a direction [-].
@@ -35,6 +39,9 @@ pub(super) struct TargetFollower {
     tool: Vec<f64>,
     /// Time since the target moved (s).
     at_rest: f64,
+    /// Time since it began to move (s), and its largest speed (scaled) [1/s].
+    moving: f64,
+    fastest: f64,
     /// The tool's speed along the target's motion or towards the target, the larger (scaled) [1/s].
     progress: f64,
     blocked: f64,
@@ -54,6 +61,8 @@ impl TargetFollower {
             target: zero.clone(),
             tool: zero,
             at_rest,
+            moving: 0.0,
+            fastest: 0.0,
             progress: 0.0,
             blocked: 0.0,
             lag: 0.0,
@@ -63,6 +72,7 @@ impl TargetFollower {
     /// No target.
     pub(super) fn reset(&mut self) {
         (self.at_rest, self.blocked, self.lag) = (f64::INFINITY, 0.0, 0.0);
+        (self.moving, self.fastest) = (0.0, 0.0);
         self.last_pose = None;
         self.target.fill(0.0);
         self.tool.fill(0.0);
@@ -96,8 +106,11 @@ impl TargetFollower {
             if length > ROUNDING { dot(&self.tool, way) / length } else { 0.0 }
         };
         self.progress = along(&self.target, speed).max(along(error, size));
-        let behind = if speed > 0.0 { dot(error, &self.target) / (speed * speed) } else { 0.0 };
-        self.lag = behind.max(0.0);
+        self.moving += dt;
+        self.fastest = speed.max(self.fastest * MEMORY / (MEMORY + dt));
+        let behind =
+            if speed > 0.0 { dot(error, &self.target) / speed / self.fastest } else { 0.0 };
+        self.lag = behind.max(0.0).min(self.moving);
     }
 
     /// Records the acceleration of the joints; true if the tool does not follow.

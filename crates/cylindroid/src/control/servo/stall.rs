@@ -153,6 +153,12 @@ impl StallDetector {
         Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
     }
 
+    /// The share of its speed that a way to the nearest pose keeps which has brought no progress for twice
+    /// the time in which a stall is named: one that swings about the pose comes to rest.
+    pub(in crate::control) fn patience(&self) -> f64 {
+        (2.0 * self.window / self.since).powi(4).min(1.0)
+    }
+
     /// Records the error of a step of `dt` seconds; true if stalled.
     pub(in crate::control) fn stalled(
         &mut self,

@@ -6,6 +6,7 @@ use super::options::ServoOptions;
 use crate::control::solver::saturation::Saturation;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Rotation, Twist};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// A moving target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +30,7 @@ impl Target {
         if !self.pose.is_finite() {
             return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
         }
-        Error::check_finite("feed-forward twist", &self.feed_forward.to_array())
+        Error::check_within("feed-forward twist", &self.feed_forward.to_array(), MAX_MAGNITUDE)
     }
 
     /// The desired motion, in the axes of the task, restricted to its components.
@@ -132,7 +133,8 @@ pub struct Step {
     /// Angle to the target, in the components of the task (rad).
     pub orientation_error: f64,
     /// Time that the tool is behind a moving target (s): the error along the target's motion, over its
-    /// speed. Zero for fixed targets.
+    /// largest speed of the last second or so; at most the time since the target began to move. Zero for
+    /// fixed targets.
     pub lag: f64,
     /// Ratio of the smallest to the largest singular value of the scaled task Jacobian.
     pub singular_ratio: f64,

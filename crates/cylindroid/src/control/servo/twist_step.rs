@@ -54,7 +54,8 @@ impl TwistStatus {
 pub struct TwistStep {
     /// Status of the servo.
     pub status: TwistStatus,
-    /// The twist that the step follows, world axes, at the tool: the last command, or zero.
+    /// The twist that the step follows, world axes, at the tool: the last command, or zero, also where the
+    /// command has no part in the components of the task.
     pub desired: Twist,
     /// The twist of the joint velocities, in the components of the task, world axes, at the tool.
     pub achieved: Twist,

@@ -118,7 +118,11 @@ fn impossible_measurements_are_named() {
     let error = servo.step_actuated(&home[..1], target).unwrap_err().to_string();
     assert!(error.contains("actuated positions"), "{error}");
     let error = servo.step_actuated(&[home[0] + 1.0, home[1] - 1.0], target).unwrap_err();
-    assert!(error.to_string().contains("loops open by"), "{error}");
+    let error = error.to_string();
+    assert!(error.contains("loops open by"), "{error}");
+    let said = ["actuated positions = '", "in the last configuration", "five-bar", "start_from"];
+    assert!(said.iter().all(|words| error.contains(words)), "{error}");
+    assert!(!error.contains("q = loops"), "{error}");
     let error = servo.step_actuated(&[f64::NAN, home[1]], target).unwrap_err();
     assert!(error.to_string().contains("actuated positions"), "{error}");
     servo.step_actuated(&home, target).unwrap();
@@ -182,8 +186,13 @@ fn redundant_sensors_lower_the_noise() {
         let driven = mechanism.actuated().next().unwrap();
         for wrong in [driven, mechanism.n()] {
             let error = servo.step_measured(&actuated, &[(wrong, 0.0)], target).unwrap_err();
-            assert!(error.to_string().contains("sensors"), "{error}");
+            let error = error.to_string();
+            assert!(error.contains("sensors"), "{error}");
+            let name = mechanism.coordinates().get(wrong).map(|c| format!("'{}'", c.name));
+            assert!(name.is_none_or(|name| error.contains(&name)), "{error}");
         }
-        servo.step_measured(&actuated, &[(passive[0], f64::NAN)], target).unwrap_err();
+        let error = servo.step_measured(&actuated, &[(passive[0], f64::NAN)], target).unwrap_err();
+        let name = &mechanism.coordinates()[passive[0]].name;
+        assert!(error.to_string().contains(name), "{error}");
     }
 }

@@ -317,3 +317,22 @@ fn stall_at_a_slide_depends_on_no_unit() {
         assert_eq!(verdict(size, 5e-4), Stall::Slow, "{size}");
     }
 }
+
+/// A Panda beside a pose that it does not reach: it swung about the nearest one with 2 rad/s for ever.
+#[test]
+fn a_swing_about_the_nearest_pose_dies_out() {
+    let panda = catalogue::load("panda").unwrap();
+    let mut q = vec![1.0451, -0.4457, -1.0394, -1.3155, 0.6218, 1.2399, -0.3026];
+    let rotation = panda.state(&q).unwrap().pose(panda.tool()).unwrap().rotation;
+    let target = Pose { rotation, translation: Vec3::new(0.53, 0.0045, 0.8003) };
+    let mut servo = servo(&panda, |o| o.dt = 2e-3);
+    for i in 0..10_000 {
+        let step = servo.step(&q, target).unwrap();
+        servo.advance(&mut q);
+        let fastest = servo.joint_velocities().iter().fold(0.0, |m: f64, rate| m.max(rate.abs()));
+        assert!(
+            i < 9000 || step.status == Status::Stalled && fastest < 0.2,
+            "{i}: {fastest} rad/s"
+        );
+    }
+}

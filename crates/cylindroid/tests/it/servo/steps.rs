@@ -185,7 +185,7 @@ fn overflow_and_foreign_options_are_refused() {
     assert!(matches!(servo.step(robot.home(), far), Err(Error::NotFinite { .. })));
     let mut overtaken = Target::from(pose);
     overtaken.feed_forward.linear = Vec3::new(f64::MAX, f64::MAX, f64::MAX);
-    assert!(matches!(servo.step(robot.home(), overtaken), Err(Error::NotFinite { .. })));
+    assert!(matches!(servo.step(robot.home(), overtaken), Err(Error::OutOfRange { .. })));
     assert_eq!(servo.joint_velocities(), rates);
 
     let mut options = ServoOptions::new(&robot);

@@ -1,7 +1,7 @@
 //! Velocity mode: twists that are followed, the watchdog, verdicts at limits and edges.
 
 use cylindroid::Twist;
-use cylindroid::control::{TwistStatus, TwistStep};
+use cylindroid::control::{TwistStatus, TwistStep, simulate_twist};
 
 use super::*;
 
@@ -197,6 +197,36 @@ fn closed_chains_follow_twists_too() {
     assert!((now.achieved - twist).linear.norm() < 1e-6, "{:?}", now.achieved);
 }
 
+/// A twist out of the plane of a planar chain moves nothing, and does not count as followed.
+#[test]
+fn twists_out_of_the_task_are_not_followed() {
+    for name in ["five-bar", "3rrr"] {
+        let robot = catalogue::load(name).unwrap();
+        let mut servo = servo(&robot, |o| o.dt = DT);
+        let now = servo.step_twist(robot.home(), Some(linear(Vec3::Z))).unwrap();
+        assert_eq!((now.status, now.desired), (TwistStatus::AtRest, Twist::ZERO), "{name}");
+    }
+}
+
+/// The share of a motion that joints at their largest velocities make is told; ramps take nothing of it.
+#[test]
+fn what_is_not_followed_is_told() {
+    for name in ["panda", "ur5e", "stewart"] {
+        let robot = catalogue::load(name).unwrap();
+        let share = |speed: f64| {
+            let mut servo = servo(&robot, |o| (o.dt, o.acceleration) = (DT, 10.0));
+            let twist = linear(Vec3::Z * -speed);
+            let command = |time: f64, _: &[f64]| Ok((time < 0.5).then_some(twist));
+            let result = simulate_twist(&mut servo, robot.home(), 10.0, command, |_| ()).unwrap();
+            (result.reached, result.followed.unwrap())
+        };
+        let (reached, followed) = share(0.05);
+        assert!(reached && (followed - 1.0).abs() < 0.01, "{name}: {followed}");
+        let (reached, followed) = share(20.0);
+        assert!(!reached && followed < 0.5, "{name}: {followed}");
+    }
+}
+
 #[test]
 fn a_broken_twist_is_refused() {
     let panda = catalogue::load("panda").unwrap();
@@ -205,6 +235,17 @@ fn a_broken_twist_is_refused() {
         let error = servo.step_twist(panda.home(), Some(twist)).unwrap_err().to_string();
         assert!(error.contains("commanded twist"), "{error}");
     }
+    // Its size, and not what it would make of the joint velocities.
+    let said = "[0] = 1e308 is out of range: magnitudes up to 1e120 are accepted";
+    let beyond = linear(Vec3::X * 1e308);
+    let error = servo.step_twist(panda.home(), Some(beyond)).unwrap_err().to_string();
+    assert_eq!(error, format!("commanded twist{said}"));
+    let pose = panda.state(panda.home()).unwrap().pose(panda.tool()).unwrap();
+    let target = Target { pose, feed_forward: beyond };
+    let error = servo.step(panda.home(), target).unwrap_err().to_string();
+    assert_eq!(error, format!("feed-forward twist{said}"));
+    servo.step_twist(panda.home(), Some(linear(Vec3::X * -1e120))).unwrap();
+    assert!(servo.joint_velocities().iter().all(|v| v.is_finite()));
     assert!(servo.step_twist(&[0.0; 3], None).is_err());
     let options = ServoOptions { command_timeout: 0.0, ..ServoOptions::new(&panda) };
     let error = Servo::new(&panda, options).unwrap_err().to_string();

@@ -147,7 +147,9 @@ impl Servo {
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
         let path = if self.edge_aim.is_some() { Path::Curved } else { Path::Straight };
+        let patience = self.stall_detector.patience();
         let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
+        let gain_of_way = gain_of_way.map(|gain| patience * gain);
         if brakes {
             let coupling = self.coupled.as_mut().map(|coupled| {
                 coupled.load_last(&self.rates, &self.space);

@@ -85,9 +85,40 @@ impl Servo {
             Ok(()) => self.step(&q, target),
             Err(error) => Err(error),
         };
+        let done = done.map_err(|error| self.lost(&q, error));
         self.track(false);
         self.predicted = q;
         done
+    }
+
+    /// The error of a step from `q`: of loops that are open, in words of the actuated joints, since the
+    /// user gave no `q`.
+    #[cold]
+    fn lost(&self, q: &[f64], error: Error) -> Error {
+        let Error::InvalidOption { option: "q", value: open, .. } = error else { return error };
+        let change =
+            |i: &usize| (q[*i] - self.configuration[*i]).abs() / self.mechanism.unit_of(*i);
+        let farthest = self.mechanism.actuated().max_by(|a, b| change(a).total_cmp(&change(b)));
+        let value = farthest.map_or_else(String::new, |i| {
+            let (name, unit) = (self.name_of(i), self.mechanism.coordinates()[i].kind.unit());
+            let before = self.configuration[i];
+            format!("{name} at {:.6} {unit} ({before:.6} {unit} in the last configuration)", q[i])
+        });
+        Error::InvalidOption {
+            option: "actuated positions",
+            value,
+            reason: format!(
+                "{open} nearby, too far to track the passive joints of '{}'; measure again, or select \
+                 a configuration with these positions by `start_from`",
+                self.mechanism.name()
+            ),
+        }
+    }
+
+    /// The name of a coordinate for messages; its index if there is none.
+    fn name_of(&self, i: usize) -> String {
+        let coordinate = self.mechanism.coordinates().get(i);
+        coordinate.map_or_else(|| i.to_string(), |c| format!("'{}'", c.name))
     }
 
     /// Replaces `q` by the closed configuration nearest to its actuated positions and the sensors.
@@ -97,15 +128,25 @@ impl Servo {
         }
         let coordinates = self.mechanism.coordinates();
         for &(i, position) in sensors {
-            Error::check_finite("positions of sensors", &[position])?;
-            let kind = coordinates.get(i).filter(|c| !c.actuated).map(|c| c.kind);
-            if !matches!(kind, Some(CoordinateKind::Angle | CoordinateKind::Length)) {
-                return Err(Error::InvalidOption {
-                    option: "sensors",
-                    value: i.to_string(),
-                    reason: "no angle or length of a passive coordinate has this index".to_owned(),
-                });
+            if !position.is_finite() {
+                let what = format!("position of the sensor of {}", self.name_of(i));
+                return Err(Error::NotFinite { what, value: position });
             }
+            let reason = match coordinates.get(i) {
+                None => "there is no such coordinate",
+                Some(c) if c.actuated => {
+                    "it is actuated, and among the actuated positions; omit it"
+                }
+                Some(c) if matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length) => {
+                    continue;
+                }
+                Some(_) => "it is no angle or length; omit it",
+            };
+            return Err(Error::InvalidOption {
+                option: "sensors",
+                value: self.name_of(i),
+                reason: format!("{reason}; sensors measure passive angles and lengths"),
+            });
         }
         let Some(coupled) = &mut self.coupled else { return Ok(()) };
         let fit = self.sensor_fit.get_or_insert_with(|| Box::new(coupled.sensor_fit()));

@@ -9,7 +9,8 @@ use super::Servo;
 use crate::error::{Error, Result};
 use crate::kinematics::ReferenceFrame;
 use crate::linalg::norm;
-use crate::spatial::Twist;
+use crate::spatial::{Pose, Twist};
+use crate::tolerance::MAX_MAGNITUDE;
 
 impl Servo {
     /// One step of velocity mode: the tool follows a twist (world axes, at the tool) within all
@@ -44,10 +45,15 @@ impl Servo {
     pub fn step_twist(&mut self, q: &[f64], command: Option<Twist>) -> Result<TwistStep> {
         self.mechanism.check_q("q", q)?;
         if let Some(twist) = command {
-            Error::check_finite("commanded twist", &twist.to_array())?;
+            Error::check_within("commanded twist", &twist.to_array(), MAX_MAGNITUDE)?;
         }
         let (dt, timeout) = (self.options.dt, self.options.command_timeout);
-        let (desired, timed_out) = self.twist_follower.desired(command, dt, timeout);
+        let (mut desired, timed_out) = self.twist_follower.desired(command, dt, timeout);
+        // Nothing is left to follow of a twist out of the plane of a planar mechanism.
+        let task = self.options.task;
+        if task.axes != ReferenceFrame::Local && task.seen(Pose::IDENTITY, desired) == Twist::ZERO {
+            desired = Twist::ZERO;
+        }
         let at_rest = desired == Twist::ZERO;
         let paused = if at_rest { std::mem::take(&mut self.options.secondary) } else { Vec::new() };
         let result = self.step_towards(q, Aim::Twist(desired), &[]);
