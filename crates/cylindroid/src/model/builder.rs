@@ -203,6 +203,7 @@ impl Builder {
         let links = self.index_links()?;
         self.check_joints(&links)?;
         let order = self.depth_first(&links)?;
+        self.check_coordinates()?;
         let mimics = self.resolve_mimics()?;
 
         let mut flat = FlatMechanism::new(self.links.len());
