@@ -15,6 +15,7 @@ mod number_file;
 mod obstacle;
 mod other_programs;
 mod output;
+mod output_file;
 mod plot;
 mod task_trajectory;
 mod trajectory;

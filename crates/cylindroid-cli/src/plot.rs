@@ -22,6 +22,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use self::fine::{Fine, at, in_pixels, px};
+use crate::output_file;
 use crate::trajectory::{Row, Trajectory, cannot_write};
 
 const SIZE: (u32, u32) = (px(960), px(900));
@@ -78,7 +79,7 @@ pub(crate) fn draw(trajectory: &Trajectory, path: &Path) -> Result<()> {
 fn save(path: &Path, draw: impl FnOnce(&mut String) -> Drawn) -> Result<()> {
     let mut svg = String::new();
     draw(&mut svg).map_err(|error| cannot_write(path, &error))?;
-    std::fs::write(path, in_pixels(&svg)).map_err(|error| cannot_write(path, &error))
+    output_file::write(path, in_pixels(&svg)).map_err(|error| cannot_write(path, &error))
 }
 
 fn panels(trajectory: &Trajectory, svg: &mut String) -> Drawn {

@@ -1,6 +1,5 @@
 //! The trajectory of `move`, step by step, as CSV or JSON.
 
-use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -8,7 +7,7 @@ use cylindroid::control::{LimitKind, TrajectorySample};
 use cylindroid::{Error, Mechanism, Result};
 use serde::Serialize;
 
-use crate::output;
+use crate::{output, output_file};
 
 /// A trajectory.
 #[derive(Debug, Serialize)]
@@ -160,7 +159,7 @@ pub(crate) fn save(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<()> {
-    let written = File::create(path).and_then(|file| {
+    let written = output_file::create(path).and_then(|file| {
         let mut file = BufWriter::new(file);
         write(&mut file)?;
         file.flush()

@@ -148,7 +148,7 @@ fn named<'py>(py: Python<'py>, values: &[(&str, f64)]) -> PyResult<Bound<'py, Py
 /// limits : bool
 ///     Position limits are bounds too.
 /// rays : int
-///     Number of rays beside those along the components.
+///     Number of rays beside those along the components. Of one component those are all.
 /// seed : int
 ///     Selects other rays.
 ///

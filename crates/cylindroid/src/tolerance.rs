@@ -28,6 +28,11 @@ pub const WIDEST_RANGE: f64 = 1e3;
 /// squares and the products with one another are finite, so that finite input gives finite results.
 pub const MAX_MAGNITUDE: f64 = 1e120;
 
+/// Lengths of a mechanism below this (m) are roundings: a hundredth of an atom's diameter, far above
+/// the roundings of files whose lengths are metres, 1e-16. A mechanism of shorter lengths alone is
+/// refused: beside one radian or one metre per second they would be lost.
+pub const MIN_LENGTH: f64 = 1e-12;
+
 /// A vector shorter than this [-] has no direction (axes in files are near unit length).
 pub const ZERO_AXIS: f64 = 1e-9;
 
@@ -193,6 +198,10 @@ pub const DUALITY: f64 = 1e-6;
 /// Metrics of motions whose factors have a larger diagonal ratio than this exhaust double
 /// precision: their duality is not checked [-].
 pub const MAX_METRIC_CONDITION: f64 = 1.0 / f64::EPSILON;
+
+/// Nor is that of directions whose ratios of output to input differ by more than this factor [-]: the
+/// smaller ones are then uncertain by [`DUALITY`].
+pub const MAX_EFFICIENCY_SPREAD: f64 = DUALITY / (64.0 * f64::EPSILON);
 
 /// A direction whose component along another is below this, relative to both, is orthogonal to it
 /// in the search for vertices of boxes: above the rounding of products of fourteen numbers, far

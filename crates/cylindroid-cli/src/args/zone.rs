@@ -69,7 +69,7 @@ pub(crate) struct ZoneArgs {
     #[arg(long)]
     pub(crate) no_limits: bool,
 
-    /// Number of rays beside those along the components
+    /// Number of rays beside those along the components; of one component those are all
     #[arg(long, value_name = "N", default_value_t = 256, allow_negative_numbers = true)]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(0..=MOST))]
     pub(crate) rays: usize,

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::args::{Cli, CompletionsArgs, ManArgs};
 use crate::commands::shared::Style;
 use crate::exit::Exit;
-use crate::{output, trajectory};
+use crate::{output, output_file, trajectory};
 
 #[derive(Debug, Serialize)]
 struct CompletionsJson {
@@ -62,6 +62,6 @@ fn page(command: &Command, folder: &Path) -> anyhow::Result<String> {
     let path = folder.join(page.get_filename());
     let mut text = Vec::new();
     page.render(&mut text)?;
-    fs::write(&path, text).map_err(|error| trajectory::cannot_write(&path, &error))?;
+    output_file::write(&path, text).map_err(|error| trajectory::cannot_write(&path, &error))?;
     Ok(path.display().to_string())
 }

@@ -19,8 +19,10 @@ pub(crate) enum Style {
 pub(crate) fn load(model: &ModelArgs, actuated: &[String]) -> cylindroid::Result<Mechanism> {
     let values: Vec<(&str, f64)> = model.parameter.iter().map(Assignment::pair).collect();
     let mut loaded = cylindroid::load_with_parameters(&model.name, &values)?;
-    if let (Some(file), Some(group)) = (&model.srdf, &model.group) {
-        loaded = srdf::load(file)?.group(group, &loaded, loaded.home())?;
+    // Read even if nothing of it is needed, so that its faults are seen.
+    let srdf = model.srdf.as_deref().map(srdf::load).transpose()?;
+    if let (Some(srdf), Some(group)) = (srdf, &model.group) {
+        loaded = srdf.group(group, &loaded, loaded.home())?;
     }
     if actuated.is_empty() { Ok(loaded) } else { loaded.with_actuated(actuated) }
 }
@@ -35,6 +37,7 @@ pub(crate) fn parametric(model: &ModelArgs) -> cylindroid::Result<ParametricMode
                 .to_owned(),
         });
     }
+    model.srdf.as_deref().map(srdf::load).transpose()?;
     let values: Vec<(&str, f64)> = model.parameter.iter().map(Assignment::pair).collect();
     ParametricModel::read(&model.name, &values)
 }

@@ -270,7 +270,7 @@ impl Complaint {
                 let culprit = if culprit.is_empty() { model } else { culprit };
                 (culprit.clone(), message.clone())
             }
-            _ => (String::new(), String::new()),
+            _ => (place.to_owned(), String::new()),
         };
         Self {
             reply_to: None,
@@ -287,7 +287,8 @@ impl Complaint {
 pub(super) fn read(text: &str) -> Result<Request, Complaint> {
     let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
         let what = format!("a message must be one JSON object: {error}");
-        Complaint::new("message", &short(text), &what, "send {\"type\": ..., ...}")
+        let culprit = if text.trim().is_empty() { "an empty text".into() } else { short(text) };
+        Complaint::new("message", &culprit, &what, "send {\"type\": ..., ...}")
     })?;
     let mut object = object;
     let id = object.remove("id");
@@ -389,6 +390,7 @@ mod tests {
         for text in ["", "[]", "7", "{\"type\": 3}", "{}", "{\"type\": \"joint\", \"value\": NaN}"]
         {
             assert_eq!(&*refused(text).place, "message", "{text}");
+            assert!(!refused(text).culprit.trim().is_empty(), "{text}");
         }
         assert_eq!(&*refused(r#"{"type": "play", "id": {}}"#).place, "message.id");
         assert_eq!(

@@ -20,6 +20,7 @@ mod optimise;
 mod other_programs;
 mod parameters;
 mod pictures;
+mod scales;
 mod screws;
 mod shape;
 mod srdf;

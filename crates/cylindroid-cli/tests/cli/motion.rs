@@ -404,3 +404,36 @@ fn limits_of_all_velocities_are_named() {
         crate::refused(&["sweep", "panda", "--configurations", &broken, "--quantities", "pose"]);
     assert!(stderr.contains("no column 'panda_joint1'"), "{stderr}");
 }
+
+/// A pipe would wait for its reader, and a folder is no file.
+#[cfg(unix)]
+#[test]
+fn outputs_are_regular_files_or_new_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let moves = ["move", "3r", "--joint-to", "joint2=0.1"];
+    let map = ["map", "five-bar", "--over", "x=0.5:1:2", "--over", "y=1:1.3:2"];
+    for (command, option, end) in [
+        (&moves[..], "--out", "csv"),
+        (&moves, "--out", "json"),
+        (&moves, "--plot", "svg"),
+        (&["sweep", "3r", "--samples", "2"], "--out", "csv"),
+        (&map, "--out", "csv"),
+        (&map, "--out", "json"),
+    ] {
+        let (pipe, taken) = (path(&format!("pipe.{end}")), path(&format!("folder.{end}")));
+        if !std::fs::exists(&pipe).unwrap() {
+            assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        }
+        let _ = std::fs::create_dir(&taken);
+        for (file, says) in [(pipe, "device, pipe or socket"), (taken, "it is a folder")] {
+            let message = refused(&[command, &[option, &file]].concat());
+            assert!(message.contains(says), "{command:?} {option} {file}: {message}");
+        }
+        // A file is replaced.
+        let file = path(&format!("file.{end}"));
+        std::fs::write(&file, "old").unwrap();
+        json(&[command, &[option, &file]].concat(), 0);
+        assert!(std::fs::metadata(&file).unwrap().len() > 3);
+    }
+}

@@ -67,6 +67,41 @@ fn groups_and_states_without_sense_are_refused() {
     });
 }
 
+/// An SRDF is read by every command, even if it needs nothing of it.
+#[test]
+fn faults_of_an_srdf_are_seen_by_all_commands() {
+    let folder = tempfile::tempdir().unwrap();
+    let broken = folder.path().join("broken.srdf");
+    fs::write(&broken, "<robot><group></robot>").unwrap();
+    let missing = folder.path().join("missing.srdf");
+    let designs = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/designs.toml");
+    let commands: [&[&str]; 12] = [
+        &["info", "panda"],
+        &["fk", "panda"],
+        &["jacobian", "panda"],
+        &["ik", "panda", "--to", "0.4,0,0.4"],
+        &["move", "panda", "--to", "0.4,0,0.4"],
+        &["mobility", "stewart"],
+        &["manipulability", "stewart"],
+        &["screws", "panda"],
+        &["zone", "stewart", "--components", "x"],
+        &["sweep", "panda", "--samples", "2"],
+        &["sweep", designs, "--over", "crank=0.4:0.6:2"],
+        &["map", "five-bar", "--over", "x=0:1:2", "--over", "y=0:1:2"],
+    ];
+    for file in [broken, missing] {
+        let file = file.to_str().unwrap();
+        let told = refused(&[commands[0], &["--srdf", file]].concat());
+        for command in commands {
+            let all = [command, &["--srdf", file]].concat();
+            assert_eq!(refused(&all), told, "{command:?}");
+        }
+    }
+    with_file(|file| {
+        json(&["fk", "panda", "--srdf", file], 0);
+    });
+}
+
 /// What an SRDF has and nobody reads is listed, with its line.
 #[test]
 fn info_lists_what_an_srdf_ignores() {

@@ -36,6 +36,29 @@ fn a_missing_or_failing_program_is_told() {
     for (script, says) in [
         (None, "pip install xacro"),
         (Some("echo 'undefined macro: arm' >&2; exit 2"), "xacro refuses it: undefined macro: arm"),
+        (
+            Some(
+                "printf \"warning: old\nerror: name 'foo' is not defined \nwhen evaluating expression \
+                  'foo'\nwhen processing file: u.xacro\" >&2; exit 2",
+            ),
+            "xacro refuses it: name 'foo' is not defined; when evaluating expression 'foo'; when \
+             processing file: u.xacro",
+        ),
+        (
+            Some(
+                "printf \"No such file or directory: ./no.xacro\nwhen processing file: u\" >&2; exit 2",
+            ),
+            "xacro refuses it: No such file or directory: ./no.xacro; when processing file: u",
+        ),
+        (
+            Some(
+                "printf \"XML parsing error: mismatched tag\n\nCheck that:\n - it is XML\" >&2; exit 2",
+            ),
+            "xacro refuses it: XML parsing error: mismatched tag",
+        ),
+        (Some("exit 2"), "xacro refuses it: no message"),
+        // It ends only because nobody reads any more.
+        (Some("while :; do printf '%080000d' 0; done"), "more than 32 MiB"),
     ] {
         let output = info(folder.path(), script);
         assert_eq!(output.status.code(), Some(2));

@@ -23,6 +23,19 @@ fn zones_in_tables_and_json() {
     assert_eq!(limited["held"][0]["name"], "z");
 }
 
+/// Of one component there are two ways, however many rays are asked for.
+#[test]
+fn one_component_has_two_rays() {
+    for rays in ["0", "1000000"] {
+        let zone = ["zone", "3r", "--components", "joint3", "--rays", rays, "--no-limits"];
+        let report = json(&zone, 0);
+        for count in ["confirmed", "certified"] {
+            assert!(report[count].as_u64().unwrap() <= 2, "{report}");
+        }
+        assert!((report["size"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{report}");
+    }
+}
+
 #[test]
 fn zones_that_do_not_exist() {
     let message = refused(&["zone", "five-bar", "--components", "x,w"]);

@@ -11,7 +11,9 @@ any link, where it has them : m, r, I, Jm, G
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -39,7 +41,10 @@ INSTEAD = {
     "MuJoCo: this library has masses (Mechanism.mass_matrix), but no dynamics",
     "configurations_str": "configs, a dictionary",
     "config_validate": "Mechanism.outside_limits",
-    "attach attach_to": "Mechanism.with_tool, or a mechanism file of several robots",
+    "T": "base, the pose of the robot in the world",
+    "tree tree_children": "links, each with its parent, or cylindroid.show",
+    "attach attach_to scene_parent scene_children": "Mechanism.with_tool, or a mechanism file of "
+    "several robots",
     "copy": "the robot itself: a Mechanism never changes",
     "basemesh fkine_geometry meshdir hasgeometry linkcolormap segments": "cylindroid.show, which "
     "draws the shapes",
@@ -87,13 +92,17 @@ class Reading:
     links: list[str]
     #: Those whose motors have an inertia.
     motors: list[str]
+    #: The links and those of grippers, in the order of their numbers.
+    frames: list[str]
+    #: Makes the mechanism without limits of its joints.
+    unlimited: Callable[[], Mechanism]
 
 
 def reading_of(robot: Any) -> Reading:
     """The mechanism of a robot of the Toolbox.
 
-    Joints, limits, poses and masses of links are read; motors, meshes and the fingers of grippers are
-    not.
+    Joints, limits, poses and masses of links are read; motors and meshes are not. Links of grippers are
+    read with the joints that their gripper has at the time, and rest there.
     """
     links = list(robot.links)
     if not links:
@@ -101,16 +110,20 @@ def reading_of(robot: Any) -> Reading:
     tool = _matrix(robot.tool)
     if hasattr(links[0], "alpha"):
         names = [f"link{i + 1}" for i in range(len(links))]
-        joints, last = _of_table(links, names), names[-1]
+        joints, last, frames = _of_table(links, names), names[-1], names
     else:
         names = [str(link.name) for link in links]
         joints = _of_transforms(links)
         grippers = getattr(robot, "grippers", None) or []
+        every = [*links, *(link for gripper in grippers for link in gripper.links)]
+        frames = [str(link.name) for link in sorted(every, key=_number)]
+        for gripper in grippers:
+            for link in gripper.links:
+                at = (gripper.q[link.jindex],) if link.isjoint else ()
+                joints.fixed(link.name, link.parent.name, link.name, _matrix(link.A(*at)))
         if grippers:
             # The end effector of an arm with a gripper is the gripper's.
-            hand, tool = grippers[0].links[0], _matrix(grippers[0].tool)
-            last = hand.name
-            joints.fixed(last, hand.parent.name, last, _matrix(hand.A()))
+            last, tool = grippers[0].links[0].name, _matrix(grippers[0].tool)
         else:
             last = robot.ee_links[0].name
     joints.fixed(f"{robot.name}: base", "world", ROOT, _matrix(robot.base))
@@ -126,7 +139,18 @@ def reading_of(robot: Any) -> Reading:
             f"the tips, which would be {order}"
         )
     motors = [name for name, link in zip(names, links) if _is_driven(link)]
-    return Reading(mechanism, frame, names, motors)
+    text = joints.urdf(str(robot.name), limits=False)
+    return Reading(mechanism, frame, names, motors, frames, partial(_parsed, text))
+
+
+@lru_cache(maxsize=8)
+def _parsed(urdf: str) -> Mechanism:
+    return parse(urdf, "urdf")
+
+
+def _number(link: Any) -> int:
+    """That of the Toolbox; those of objects without numbers stay in their order."""
+    return int(getattr(link, "number", None) or 0)
 
 
 def _is_driven(link: Any) -> bool:
@@ -139,7 +163,8 @@ class _Joints:
     def __init__(self) -> None:
         self.links = [ROOT]
         self.masses: dict[str, str] = {}
-        self.moving: list[tuple[int, str, str]] = []
+        #: Place, name, and the text with limits and without.
+        self.moving: list[tuple[int, str, str, str]] = []
         self.rigid: list[str] = []
 
     def fixed(self, name: str, parent: str, child: str, pose: NDArray[np.float64]) -> None:
@@ -153,12 +178,14 @@ class _Joints:
         """A joint along or about an axis, such as 'Rz' or 'tx'; in the plane 'R' is about z."""
         self.links += [link for link in (parent, child) if link not in self.links]
         direction = " ".join(str(sign * int(x)) for x in _AXES[kind[1:] or "z"].split())
-        inside = f'<axis xyz="{direction}"/>'
-        bounded = limits is not None and np.all(np.isfinite(limits))
-        type = "prismatic" if kind[0] == "t" else "revolute" if bounded else "continuous"
-        if bounded:
-            inside += f'<limit lower="{float(limits[0])!r}" upper="{float(limits[1])!r}"/>'
-        self.moving.append((place, name, _joint(name, type, parent, child, pose, inside)))
+        axis = f'<axis xyz="{direction}"/>'
+        type = "prismatic" if kind[0] == "t" else "continuous"
+        free = bounded = _joint(name, type, parent, child, pose, axis)
+        if limits is not None and np.all(np.isfinite(limits)):
+            inside = f'{axis}<limit lower="{float(limits[0])!r}" upper="{float(limits[1])!r}"/>'
+            type = "prismatic" if kind[0] == "t" else "revolute"
+            bounded = _joint(name, type, parent, child, pose, inside)
+        self.moving.append((place, name, bounded, free))
 
     def has_mass(self, name: str, link: Any) -> None:
         """The mass of a link, its centre and its inertia about it, in the axes of the link."""
@@ -177,13 +204,15 @@ class _Joints:
 
     def names(self) -> list[str]:
         """The joints in the order of q."""
-        return [name for _, name, _ in sorted(self.moving)]
+        return [name for _, name, _, _ in sorted(self.moving)]
 
-    def urdf(self, name: str) -> str:
+    def urdf(self, name: str, limits: bool = True) -> str:
         links = "".join(
             f"<link name={quoteattr(link)}>{self.masses.get(link, '')}</link>" for link in self.links
         )
-        joints = "".join(text for _, _, text in sorted(self.moving))
+        joints = "".join(
+            bounded if limits else free for _, _, bounded, free in sorted(self.moving)
+        )
         return f"<robot name={quoteattr(name)}>{links}{joints}{''.join(self.rigid)}</robot>"
 
 

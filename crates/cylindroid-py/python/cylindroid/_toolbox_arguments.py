@@ -111,15 +111,13 @@ def in_axes_of(pose: NDArray[np.float64], twists: NDArray[np.float64]) -> NDArra
     return axes @ twists
 
 
-def check_search(options: Sequence[Any], search: Mapping[str, Any], joint_limits: bool) -> None:
-    """Raises for options that no search of the Toolbox has, and for searches without limits."""
+def check_search(options: Sequence[Any], search: Mapping[str, Any]) -> None:
+    """Raises for options that no search of the Toolbox has."""
     if len(options) > MOST_OPTIONS:
         raise TypeError("inverse kinematics has at most six options of the search")
     for name in search:
         if name not in SEARCH:
             raise TypeError(f"inverse kinematics has no argument {name!r}")
-    if not joint_limits:
-        raise NotHere("joint_limits = False is not in cylindroid.rtb: limits are always kept")
 
 
 def inverse_kinematics(

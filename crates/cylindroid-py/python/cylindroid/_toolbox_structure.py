@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,12 @@ class Structure:
     #: Links whose motors have an inertia that the mass matrix lacks.
     _motors: list[str]
     _now: dict[str, NDArray[np.float64]]
+    #: The places in `Mechanism.frames` of the links, in the order of `fkine_all`.
+    _places: list[int]
+    #: Makes the mechanism without limits of a robot of the Toolbox.
+    _unlimited: Callable[[], Mechanism] | None
+    #: `qdlim` of the robot of the Toolbox.
+    _speeds: ArrayLike | None
 
     @property
     def n(self) -> int:
@@ -52,8 +59,42 @@ class Structure:
 
     @property
     def qlim(self) -> NDArray[np.float64]:
-        """Joint limits, (2, n): lower, upper [rad or m]."""
-        return np.stack([self.mechanism.lower, self.mechanism.upper])
+        """Joint limits, (2, n): lower, upper [rad or m].
+
+        As in the Toolbox an angle without limits has -pi and pi, which inverse kinematics, `islimit`
+        and `Mechanism.lower` do not know; a length without limits is infinite, where there it raises.
+        """
+        limits = np.stack([self.mechanism.lower, self.mechanism.upper])
+        free = np.isinf(limits).all(axis=0) & self.revolutejoints
+        limits[:, free] = [[-np.pi], [np.pi]]
+        return limits
+
+    @property
+    def qdlim(self) -> NDArray[np.float64]:
+        """Limits of speeds, (n,) [rad/s or m/s], infinite without.
+
+        Those of a robot of the Toolbox are as there, with what it may have for grippers.
+        """
+        if self._speeds is None:
+            return self.mechanism.velocity_limit
+        return np.array(self._speeds, dtype=float)
+
+    def _without_limits(self) -> Mechanism:
+        """The mechanism of searches that may leave the limits.
+
+        Raises
+        ------
+        NotImplementedError
+            For a mechanism of this library that has limits.
+        """
+        if self._unlimited is not None:
+            return self._unlimited()
+        if np.isfinite([self.mechanism.lower, self.mechanism.upper]).any():
+            raise NotHere(
+                f"joint_limits = False is not in cylindroid.rtb for '{self.name}', whose joints have limits; "
+                "use Robot of a model file without them, which cylindroid.parse reads too"
+            )
+        return self.mechanism
 
     @property
     def qz(self) -> NDArray[np.float64]:
@@ -119,7 +160,7 @@ class Structure:
 
     def islimit(self, q: ArrayLike) -> list[bool]:
         """For each coordinate, true at or beyond a limit; q of shape (n,)."""
-        q, (lower, upper) = self.mechanism.ordered(q), self.qlim
+        q, lower, upper = self.mechanism.ordered(q), self.mechanism.lower, self.mechanism.upper
         return [bool(x) for x in (q <= lower) | (q >= upper)]
 
     def random_q(self, seed: int | None = None) -> NDArray[np.float64]:
@@ -144,8 +185,8 @@ class Structure:
 
     @property
     def nlinks(self) -> int:
-        """Number of links."""
-        return len(self._links)
+        """Number of links; for robots of the Toolbox those of grippers count too."""
+        return len(self._places)
 
     @property
     def base_link(self) -> Link:
@@ -205,8 +246,9 @@ class Structure:
         Default of q: `Robot.q`. Links are numbered as in `links`.
         """
         ends = [int(i) for i in np.atleast_1d(np.asarray(j))]
-        if len(ends) not in (1, 2) or ends != sorted(ends) or not 0 <= ends[0] <= ends[-1] < self.nlinks:
-            raise refused("j", f"one link or two that rise, 0 to {self.nlinks - 1}, not {j!r:.99}")
+        last = len(self._links) - 1
+        if len(ends) not in (1, 2) or ends != sorted(ends) or not 0 <= ends[0] <= ends[-1] <= last:
+            raise refused("j", f"one link or two that rise, 0 to {last}, not {j!r:.99}")
         start = self._base
         if len(ends) == 2:
             start = self.links[ends[0]].parent_name or start

@@ -11,11 +11,15 @@ What is as there: ``links`` with name, parent, ``jindex`` and ``A(q)``, ``ets``,
 can be read and not set; ``jacob0`` has world axes and its linear part at the end effector's origin,
 ``jacobe`` the axes of the end effector; ``ikine_LM`` returns ``.q``, ``.success``, ``.iterations``,
 ``.searches``, ``.residual``, and ``ik_LM`` the same as a tuple. What is not: poses are arrays of
-4 x 4, not ``SE3``; all methods of inverse kinematics are the one of `Mechanism.ik`, which keeps joint
-limits, so that options of their searches (``method``, ``k``, ``pinv``, ...) are accepted and change
+4 x 4, not ``SE3``; all methods of inverse kinematics are the one of `Mechanism.ik`, so that options of their searches (``method``, ``k``, ``pinv``, ...) are accepted and change
 nothing; ``plot``, ``vellipse`` and ``fellipse`` draw with matplotlib and return its axes; frames are
 named, not numbered; ``manipulability`` of an arm with fewer joints than axes is the volume that its
-joints do span, where there it is zero. Members of the Toolbox that are not here raise
+joints do span, where there it is zero; `qlim` has infinities for lengths without limits, where there
+it raises; `start` is always the frame of that link, where there a way outwards begins at its parent
+and has the link's own joint too. Columns of Jacobians and Hessians are those of the joints on the way from `start` to `end`
+for robots of the Toolbox, and of all joints for mechanisms of this library, whose loops leave no one
+way. As there, q has all joints or those of the way; results of inverse kinematics have all, so that
+`q`, `fkine`, `jtraj` and `plot` take them. Members of the Toolbox that are not here raise
 `NotImplementedError` with the function that does the same.
 """
 
@@ -32,7 +36,6 @@ from numpy.typing import ArrayLike, NDArray
 from . import Mechanism, load
 from ._toolbox import ROOT, NotHere, instead_of, is_toolbox_robot, reading_of
 from ._toolbox_arguments import (
-    AXES,
     METHODS,
     asada,
     check_given,
@@ -44,12 +47,13 @@ from ._toolbox_arguments import (
 )
 from ._toolbox_links import ET, ETS, Link
 from ._toolbox_results import IKSolution, Trajectory, from_configurations, from_pose_to_pose
-from ._toolbox_structure import Structure
+from ._toolbox_pictures import Pictures
+from ._toolbox_ways import Ways
 
 __all__ = ["ET", "ETS", "IKSolution", "Link", "Robot", "Trajectory"]
 
 
-class Robot(Structure):
+class Robot(Pictures):
     """A mechanism with the methods of the Toolbox.
 
     Parameters
@@ -69,15 +73,21 @@ class Robot(Structure):
 
     def __init__(self, robot: Mechanism | str | os.PathLike[str] | Any) -> None:
         self.configs, self._base, self._motors = {}, None, []
+        self._unlimited = self._speeds = None
         if is_toolbox_robot(robot):
             found = reading_of(robot)
             self.mechanism, self._end, self._motors = found.mechanism, found.end, found.motors
-            self._base, self._links = ROOT, found.links
+            self._base, self._links, frames = ROOT, found.links, found.frames
+            self._unlimited, self._speeds = found.unlimited, getattr(robot, "qdlim", None)
             configs = getattr(robot, "configs", None) or {}
             self.configs = {name: np.array(q, dtype=float) for name, q in configs.items()}
         else:
             self.mechanism = robot if isinstance(robot, Mechanism) else load(robot)
             self._end, self._links = self.mechanism.tool, self.mechanism.links
+            frames = self._links
+        order = self.mechanism.frames
+        self._places = [order.index(frame) for frame in frames]
+        self._ways = Ways(self.mechanism, self._base is not None)
         self._now = {name: np.zeros(self.n) for name in ("q", "qd", "qdd")}
 
     def copy(self) -> Robot:
@@ -107,6 +117,7 @@ class Robot(Structure):
 
         With `start` in this frame; without the base, which robots of the Toolbox have, in its frame.
         """
+        q = self._ways.whole(q, self._ways.between(start, end or self._end))
         pose = self.mechanism.fk(q, end or self._end, tool)
         if start is None and not include_base:
             start = self._base
@@ -115,8 +126,14 @@ class Robot(Structure):
         return np.asarray(np.linalg.solve(self.mechanism.fk(q, start), pose), dtype=np.float64)
 
     def fkine_all(self, q: ArrayLike) -> NDArray[np.float64]:
-        """The poses of all frames, in the order of `Mechanism.frames`: `Mechanism.fk_all`."""
-        return self.mechanism.fk_all(q)
+        """The poses of the base and of the links, (nlinks + 1, 4, 4) or (N, nlinks + 1, 4, 4).
+
+        Links are in the order of the Toolbox's numbers or of `links`. Those of grippers have the joints
+        that their gripper had when the robot was read. `Mechanism.fk_all` has all frames.
+        """
+        poses = self.mechanism.fk_all(q)
+        base = np.broadcast_to(self.base, (*poses.shape[:-3], 1, 4, 4))
+        return np.concatenate([base, poses[..., self._places, :, :]], axis=-3)
 
     def _is_fixed(self, start: str) -> bool:
         return not np.any(self.mechanism.jacobian(self.qr, start))
@@ -138,14 +155,19 @@ class Robot(Structure):
         start: str | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Jacobian in world axes, (6, n) or (N, 6, n), linear rows first.
+        """The Jacobian in world axes, (6, k) or (N, 6, k), linear rows first.
 
-        With `start` that relative to this frame, in its axes: `Mechanism.relative_jacobian`. Unlike in
-        the Toolbox, n is the number of all joints; those before `start` have zeros.
+        With `start` that relative to this frame, in its axes: `Mechanism.relative_jacobian`. The k
+        columns are those of the joints from `start` to `end`, in this order, for robots of the Toolbox,
+        and all n of mechanisms of this library, whose joints before `start` have zeros.
         """
+        way = self._ways.between(start, end or self._end)
+        q = self._ways.whole(q, way)
         if start is not None:
-            return self.mechanism.relative_jacobian(q, start, end or self._end, tool)
-        return self.mechanism.jacobian(q, end or self._end, "local_world_aligned", tool)
+            found = self.mechanism.relative_jacobian(q, start, end or self._end, tool)
+        else:
+            found = self.mechanism.jacobian(q, end or self._end, "local_world_aligned", tool)
+        return self._ways.columns(found, way)
 
     def jacobe(
         self,
@@ -154,10 +176,12 @@ class Robot(Structure):
         start: str | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Jacobian in the axes of the end effector, (6, n) or (N, 6, n); as `jacob0`."""
+        """The Jacobian in the axes of the end effector, (6, k) or (N, 6, k); as `jacob0`."""
+        way = self._ways.between(start, end or self._end)
+        q = self._ways.whole(q, way)
         if start is not None:
             return in_axes_of(self.fkine(q, end, start, tool), self.jacob0(q, end, start, tool))
-        return self.mechanism.jacobian(q, end or self._end, "local", tool)
+        return self._ways.columns(self.mechanism.jacobian(q, end or self._end, "local", tool), way)
 
     def hessian0(
         self,
@@ -167,11 +191,13 @@ class Robot(Structure):
         J0: ArrayLike | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Hessian in world axes, (n, 6, n) or (N, n, 6, n); `J0` must be that of q."""
+        """The Hessian in world axes, (k, 6, k) or (N, k, 6, k); as `jacob0`, and `J0` must be that of q."""
         check_given("J0", J0, None if q is None else partial(self.jacob0, q, end, None, tool))
         self._from_base(start, "the Hessian")
-        q = self.qr if q is None else q
-        return self.mechanism.hessian(q, end or self._end, "local_world_aligned", tool)
+        way = self._ways.between(start, end or self._end)
+        q = self.qr if q is None else self._ways.whole(q, way)
+        found = self.mechanism.hessian(q, end or self._end, "local_world_aligned", tool)
+        return self._ways.columns(found, way, (-3, -1))
 
     def hessiane(
         self,
@@ -181,7 +207,7 @@ class Robot(Structure):
         Je: ArrayLike | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Hessian in the axes of the end effector, (n, 6, n) or (N, n, 6, n); as `hessian0`."""
+        """The Hessian in the axes of the end effector, (k, 6, k) or (N, k, 6, k); as `hessian0`."""
         check_given("Je", Je, None if q is None else partial(self.jacobe, q, end, None, tool))
         q = self.qr if q is None else q
         pose = self.fkine(q, end, tool=tool)[..., None, :, :]
@@ -210,11 +236,17 @@ class Robot(Structure):
         *,
         end: str | None = None,
     ) -> NDArray[np.float64]:
-        """The time derivative of `jacob0`, (6, n): `Mechanism.jacobian_dot`; `J0` must be that of q."""
+        """The time derivative of `jacob0`, (6, k): `Mechanism.jacobian_dot`; `J0` must be that of q.
+
+        Joints that are not on the way are at rest where qd has those of the way alone.
+        """
         if representation is not None:
             raise NotHere("rates of analytical Jacobians are not here; call it without representation")
         check_given("J0", J0, None if q is None else partial(self.jacob0, q, end))
-        return self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
+        way = self._ways.between(None, end or self._end)
+        q, qd = self._ways.whole(q, way), self._ways.whole(qd, way, 0.0)
+        found = self.mechanism.jacobian_dot(q, qd, end or self._end, "local_world_aligned")
+        return self._ways.columns(found, way)
 
     def jacob0_analytical(
         self,
@@ -224,7 +256,7 @@ class Robot(Structure):
         start: str | None = None,
         tool: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
-        """The Jacobian of position and angles, (6, n) or (N, 6, n).
+        """The Jacobian of position and angles, (6, k) or (N, 6, k), with the columns of `jacob0`.
 
         Parameters
         ----------
@@ -243,8 +275,10 @@ class Robot(Structure):
         angles = {"rpy/xyz": "xyz", "rpy/zyx": "rpy", "eul": "zyz", "exp": "rotation_vector"}
         if representation not in angles:
             raise ValueError(f"representation = {representation!r}: one of {', '.join(angles)}")
-        found = self.mechanism.analytical_jacobian(
-            q, angles[representation], end or self._end, tool
+        way = self._ways.between(start, end or self._end)
+        q = self._ways.whole(q, way)
+        found = self._ways.columns(
+            self.mechanism.analytical_jacobian(q, angles[representation], end or self._end, tool), way
         )
         # Roll first, which is the last angle there.
         return found[..., [0, 1, 2, 5, 4, 3], :] if representation == "rpy/xyz" else found
@@ -258,18 +292,19 @@ class Robot(Structure):
         start: str | None = None,
         axes: str | ArrayLike = "all",
     ) -> NDArray[np.float64]:
-        """The gradient of Yoshikawa's manipulability at q or `qr`, (n, 1); NaN where there is none."""
+        """The gradient of Yoshikawa's manipulability at q or `qr`, (k, 1); NaN where there is none."""
         check_given("J", J, None if q is None else partial(self.jacob0, q, end))
         check_given("H", H, None if q is None else partial(self.hessian0, q, end))
         self._from_base(start, "the gradient")
+        way = self._ways.between(start, end or self._end)
         found = self.mechanism.manipulability_gradient(
-            self.qr if q is None else q,
+            self.qr if q is None else self._ways.whole(q, way),
             "volume",
             reference=end or self._end,
             task=task_of(axes),
         )
         gradient = np.full(self.n, np.nan) if found.gradient is None else found.gradient
-        return gradient.reshape(-1, 1)
+        return self._ways.columns(gradient, way).reshape(-1, 1)
 
     def manipulability(
         self,
@@ -308,16 +343,18 @@ class Robot(Structure):
             raise ValueError(f"method = {method!r}: one of {', '.join(METHODS)}")
         check_given("J", J, None if q is None else partial(self.jacob0, q, end))
         self._from_base(start, "manipulability")
-        q = self.mechanism.ordered(self.qr if q is None else q)
+        way = self._ways.between(start, end or self._end)
+        q = self.mechanism.ordered(self.qr if q is None else self._ways.whole(q, way))
         many = np.atleast_2d(q)
         if method == "asada":
             if self.mechanism.is_closed:
                 raise NotHere("method = 'asada' of closed chains is not in cylindroid.rtb")
-            both = zip(self.jacob0(many, end), self.inertia(many))
+            jacobians = self.mechanism.jacobian(many, end or self._end, "local_world_aligned")
+            both = zip(jacobians, self.inertia(many))
             values = [asada(J, M, task) for J, M in both]
         else:
             found = self.mechanism.manipulability(many, reference=end or self._end, task=task)
-            possible = min(task.count(",") + 1, self.n)
+            possible = min(task.count(",") + 1, len(way))
             values = [measure(report.kinematic, method, possible) for report in found]
         return values[0] if np.ndim(q) == 1 else np.array(values)
 
@@ -355,7 +392,7 @@ class Robot(Structure):
         mask : six numbers, optional
             Which components matter; those that are not zero.
         joint_limits : bool
-            True; limits are always kept.
+            False to search beyond them: for robots of the Toolbox, and for mechanisms without limits.
         seed : int, optional
         *options, **search
             `k`, `method`, `kq`, `km`, `ps`, `pi`, `pinv`, `pinv_damping`, `kj`, `ks` of the Toolbox's
@@ -364,15 +401,29 @@ class Robot(Structure):
         Returns
         -------
         IKSolution
-            Within joint limits, always.
+            Of all joints, within their limits if `joint_limits`.
+
+        Raises
+        ------
+        NotImplementedError
+            For `joint_limits=False` and a mechanism of this library that has limits.
         """
         if start is not None:
             if not self._is_fixed(start):
                 raise NotHere(f"start = {start!r} moves: targets are in frames at rest here")
             Tep = self.mechanism.fk(self.qr, start) @ np.asarray(Tep, dtype=float)
-        check_search(options, search, joint_limits)
+        check_search(options, search)
+        if q0 is not None:
+            q0 = self._ways.whole(q0, self._ways.between(start, end or self._end))
         found = inverse_kinematics(
-            self.mechanism, Tep, end or self._end, q0, ilimit * slimit, tol, mask, seed or 0
+            self.mechanism if joint_limits else self._without_limits(),
+            Tep,
+            end or self._end,
+            q0,
+            ilimit * slimit,
+            tol,
+            mask,
+            seed or 0,
         )
         residual = 0.5 * (found.position_error**2 + found.orientation_error**2)
         reason = "" if found.success else "not reached within the budget"
@@ -434,31 +485,3 @@ class Robot(Structure):
             ordered = self.mechanism.ordered
             return from_configurations(ordered(T1), ordered(T2), t)
         return from_pose_to_pose(partial(self.ikine_LM, **options), T1, T2, t)
-
-    def _ellipse(self, q: ArrayLike | None, opt: str, kind: str, options: dict[str, Any]) -> Any:
-        from . import plot
-
-        if opt not in ("trans", "rot"):
-            raise ValueError(f"opt = {opt!r}: 'trans' or 'rot'")
-        q = self.mechanism.ordered(self.q if q is None else q)
-        report = self.mechanism.manipulability(q, reference=self._end, task=AXES[opt])
-        return plot.ellipsoid(getattr(report, kind), self.fkine(q)[:3, 3], **options)
-
-    def vellipse(self, q: ArrayLike | None = None, opt: str = "trans", **options: Any) -> Any:
-        """Draws the ellipsoid of velocities, 'trans' or 'rot'; returns the axes of matplotlib.
-
-        The options are those of `cylindroid.plot.ellipsoid`. Default of q: `Robot.q`.
-        """
-        return self._ellipse(q, opt, "kinematic", options)
-
-    def fellipse(self, q: ArrayLike | None = None, opt: str = "trans", **options: Any) -> Any:
-        """Draws the ellipsoid of forces; as `vellipse`."""
-        return self._ellipse(q, opt, "active_force", options)
-
-    plot_vellipse, plot_fellipse = vellipse, fellipse
-
-    def plot(self, q: ArrayLike | None = None, ax: Any = None) -> Any:
-        """Draws the robot: `cylindroid.plot.mechanism`; returns the axes of matplotlib."""
-        from . import plot
-
-        return plot.mechanism(self.mechanism, self.q if q is None else q, ax)

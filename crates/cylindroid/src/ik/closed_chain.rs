@@ -8,7 +8,8 @@
 //! Units    m, rad
 //! Valid    any mechanism with loops or contacts, one frame, any translations, an orientation of which
 //!          all, none, or all but one component are given. Modes may be missed, since restarts are
-//!          random; failure is no proof that none exists
+//!          random; failure is no proof that none exists, unless the target is farther away than the
+//!          joints of the tree that carry the frame, for which no search is needed
 //! Why so   loops and target are closed together: solving the tree first and closing the loops after
 //!          it would leave the target
 //! Checked  tests/map/inverse.rs
@@ -22,7 +23,7 @@ use crate::closure::{
     AssemblyModes, ModeOptions, Platform, PlatformChain, PlatformRotation, assemble, assembly_modes,
 };
 use crate::error::{Error, Result};
-use crate::kinematics::{EndEffector, ReferenceFrame};
+use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::model::{Dimension, Mechanism};
 use crate::spatial::{Pose, Vec3};
 use crate::task::Task;
@@ -63,8 +64,14 @@ pub(super) fn solve_closed(
     };
     let mut solutions = Vec::new();
     let mut tried = 0;
+    let out_of_reach = goal.out_of_reach(mechanism, options.position_tolerance)?;
     // The guess alone reaches most targets nearby.
-    for number in if first_only { vec![1, 8.min(most), most] } else { vec![most] } {
+    let numbers = match out_of_reach {
+        Some(_) => Vec::new(),
+        None if first_only => vec![1, 8.min(most), most],
+        None => vec![most],
+    };
+    for number in numbers {
         let found = search(&platform, starts(number))?;
         tried += number;
         for mode in &found.modes {
@@ -91,15 +98,21 @@ pub(super) fn solve_closed(
     // Loops closed as near to the best attempt as possible.
     let attempt = search(&platform, starts(1))?.first.q;
     let closest = assemble(mechanism, &attempt[..mechanism.n()], &options.fixed)?.q;
-    let unlimited = goal.platform(&mechanism.without_position_limits())?;
+    let miss = Solution { out_of_reach, ..goal.solution(mechanism, &closest, (0, tried))? };
+    let unlimited = mechanism.without_position_limits();
+    let proof = out_of_reach.map(|(distance, length)| MissReason::OutOfReach { distance, length });
+    if proof.is_some() && goal.out_of_reach(&unlimited, options.position_tolerance)?.is_some() {
+        return Ok(vec![Solution { reason: proof, ..miss }]);
+    }
+    let unlimited = goal.platform(&unlimited)?;
     let beyond = search(&unlimited, starts(UNLIMITED_STARTS.min(most)))?;
     let names = |q: &[f64]| -> Vec<String> {
         mechanism.outside_limits(q).map(|i| mechanism.coordinates()[i].name.clone()).collect()
     };
     let outside = beyond.modes.iter().map(|mode| names(&mode.assembly.q[..mechanism.n()]));
     let fewest = outside.filter(|joints| !joints.is_empty()).min_by_key(Vec::len);
-    let reason = fewest.map_or(MissReason::NotProven, |joints| MissReason::Limits { joints });
-    let miss = goal.solution(mechanism, &closest, (0, tried))?;
+    let limits = fewest.map(|joints| MissReason::Limits { joints });
+    let reason = limits.or(proof).unwrap_or(MissReason::NotProven);
     Ok(vec![Solution { reason: Some(reason), ..miss }])
 }
 
@@ -159,6 +172,23 @@ impl FrameGoal {
         let [x, y, z, ..] = task.components;
         let chain = PlatformChain { world_from_zero: zero, slides: [!x, !y, !z], rotation };
         Platform::of(mechanism, tool, chain)
+    }
+
+    /// The distance of the target from the first joint that carries the frame, over the components of
+    /// the task, and the length of the chain from there, if that is shorter: loops only take motions
+    /// away.
+    fn out_of_reach(&self, mechanism: &Mechanism, tolerance: f64) -> Result<Option<(f64, f64)>> {
+        let Task { components: [x, y, z, ..], axes } = self.task;
+        let on = [x, y, z && mechanism.dimension() == Dimension::Spatial];
+        if axes == ReferenceFrame::Local && on != [true; 3] {
+            return Ok(None);
+        }
+        let chain = Chain::new(mechanism, self.end_effector)?;
+        let away = (self.target.translation - chain.first_origin()).to_array();
+        let along = away.iter().zip(on).map(|(x, on)| if on { *x } else { 0.0 });
+        let far = crate::linalg::norm(&along.collect::<Vec<_>>());
+        let length = chain.length_after_first_joint(mechanism);
+        Ok((far > length * (1.0 + 1e-12) + tolerance).then_some((far, length)))
     }
 
     /// The errors of a configuration.

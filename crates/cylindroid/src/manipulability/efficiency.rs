@@ -23,7 +23,7 @@ use super::metrics::Metrics;
 use crate::closure::{Relation, RelationBases};
 use crate::error::Result;
 use crate::linalg::{CsDecomposition, Matrix, Metric, Qr, dot};
-use crate::tolerance::{DUALITY, MAX_METRIC_CONDITION};
+use crate::tolerance::{DUALITY, MAX_EFFICIENCY_SPREAD, MAX_METRIC_CONDITION};
 
 /// A point (s : c) of the projective line, `s^2 + c^2 = 1`: output over input.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +77,13 @@ impl Spectrum {
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
         self.finite.iter().map(|d| d.pair.efficiency()).collect()
+    }
+
+    /// Largest ratio of output to input over the smallest.
+    fn spread(&self) -> f64 {
+        let ratio = |d: &Direction| d.pair.output / d.pair.input;
+        let ends = self.finite.first().zip(self.finite.last());
+        ends.map_or(1.0, |(most, least)| ratio(most) / ratio(least))
     }
 
     /// The semi-axes of the ellipsoid of what comes out for an input of length one, a column
@@ -239,6 +246,7 @@ impl Manipulability {
         debug_assert!(
             !metrics.is_dual()
                 || metrics.diagonal_ratio() > MAX_METRIC_CONDITION
+                || all.kinematic.spread() > MAX_EFFICIENCY_SPREAD
                 || all.is_dual_to(&Spectrum::of(relation.forces(), torque, wrench)),
             "forces are not dual: {all:?}"
         );

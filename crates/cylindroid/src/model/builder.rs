@@ -197,12 +197,14 @@ impl Builder {
     /// more than one root, an axis without direction, contradictory limits or position limits of
     /// spherical and free joints, a mimic joint that follows itself, an unknown joint, or a joint
     /// of several coordinates; for a loop joint or a contact on an unknown link or on one link
-    /// alone.
+    /// alone; for lengths that are all below [`MIN_LENGTH`](crate::tolerance::MIN_LENGTH), unless
+    /// all are zero.
     pub fn build(mut self) -> Result<Mechanism> {
         self.joints.iter_mut().for_each(JointSpec::normalise);
         let links = self.index_links()?;
         self.check_joints(&links)?;
         let order = self.depth_first(&links)?;
+        self.check_coordinates()?;
         let mimics = self.resolve_mimics()?;
 
         let mut flat = FlatMechanism::new(self.links.len());
@@ -481,6 +483,7 @@ impl Builder {
             }),
         };
         mechanism.check_elasticity()?;
+        mechanism.check_size()?;
         Ok(mechanism.measured())
     }
 }

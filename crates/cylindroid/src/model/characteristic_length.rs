@@ -5,9 +5,10 @@
 //!          centre c minimises the sum of their squared distances, `sum (1 - d d^T) (c - p) = 0`
 //!          (d = 0 for points); L = 2 max distance from c
 //! Units    m
-//! Valid    any mechanism. Where all features meet in a point (a spherical wrist) or there is none
+//! Valid    any mechanism; lengths below MIN_LENGTH are roundings and count as zero. Where all features meet in a point (a spherical wrist) or there is none
 //!          (slides alone), the origins of the joint frames replace them, then the longest travel
 //!          of a slide, then 1 m: no length of the mechanism enters its equations then
+//! Fails    if a length is not zero, and none is as long as MIN_LENGTH
 //! Why so   distances between lines and points are those of the mechanism, whatever the origin and
 //!          the axes of the world, the order of the joints and the point on an axis at which a file
 //!          draws a joint; the reference point makes the centre unique
@@ -16,9 +17,11 @@
 use std::sync::Arc;
 
 use super::joint::{JointKind, JointLocus};
+use super::link::Geometry;
 use super::mechanism::Mechanism;
+use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
-use crate::tolerance::{COMMON_POINT, POSITION_ROUNDING};
+use crate::tolerance::{COMMON_POINT, MAX_MAGNITUDE, MIN_LENGTH, POSITION_ROUNDING};
 
 /// A line, or a point where the direction is missing.
 struct Feature {
@@ -128,23 +131,88 @@ impl Mechanism {
             }
         }
         let far = origins.iter().fold(0.0, |far: f64, p| far.max((*p + reference).norm()));
-        let rounding = POSITION_ROUNDING * far;
+        let rounding = MIN_LENGTH.max(POSITION_ROUNDING * far);
         let points: Vec<Feature> = origins
             .into_iter()
             .map(|point| Feature { weight: 1.0, point, direction: None })
             .collect();
         let (lines, points) = (extent(&features), extent(&points));
-        let travels = self.coordinates().iter().filter(|c| c.kind.is_length());
-        let travel = travels
-            .map(|c| c.limits.upper - c.limits.lower)
-            .filter(|travel| travel.is_finite())
-            .fold(0.0, f64::max);
-        let length =
-            [(lines, rounding.max(COMMON_POINT * points)), (points, rounding), (travel, 0.0)]
-                .into_iter()
-                .find(|(length, least)| length > least)
-                .map_or(1.0, |(length, _)| length);
+        let travel = self.travels().fold(0.0, f64::max);
+        let length = [
+            (lines, rounding.max(COMMON_POINT * points)),
+            (points, rounding),
+            (travel, MIN_LENGTH),
+        ]
+        .into_iter()
+        .find(|(length, least)| length > least)
+        .map_or(1.0, |(length, _)| length);
         [length, far]
+    }
+
+    /// Those of slides between two limits (m).
+    fn travels(&self) -> impl Iterator<Item = f64> {
+        let slides = self.coordinates().iter().filter(|c| c.kind.is_length());
+        slides.map(|c| c.limits.upper - c.limits.lower).filter(|travel| travel.is_finite())
+    }
+
+    /// Refuses a mechanism that has lengths, all of them below [`MIN_LENGTH`]; short ones beside others
+    /// are roundings.
+    pub(super) fn check_size(&self) -> Result<()> {
+        let joints = self.joints().iter().flat_map(|j| [j.parent_from_joint, j.joint_from_child]);
+        let loops = self.loops().iter().flat_map(|l| [l.link_a_from_joint, l.link_b_from_joint]);
+        let contacts = self.contacts().iter();
+        let contacts = contacts.flat_map(|c| [c.link_a_from_contact, c.link_b_from_contact]);
+        let frames = self.frames().iter().map(|f| f.link_from_frame);
+        let places = joints.chain(loops).chain(contacts).chain(frames);
+        let pitches = self.joints().iter().map(|j| match j.kind {
+            JointKind::Helical { pitch } => pitch.abs(),
+            _ => 0.0,
+        });
+        let shapes = self.links().iter().map(|link| {
+            let collisions = link.collisions.iter().map(|c| (&c.geometry, c.link_from_shape));
+            let visuals = link.visuals.iter().map(|v| (&v.geometry, v.link_from_shape));
+            let sizes = collisions.chain(visuals).map(|(shape, at)| size(shape).max(reach_of(at)));
+            let mass = link.inertial.map_or(0.0, |i| reach_of(i.link_from_inertia));
+            sizes.fold(mass, f64::max)
+        });
+        let lengths = places.map(reach_of).chain(self.travels()).chain(pitches).chain(shapes);
+        let longest = lengths.fold(0.0, f64::max);
+        if longest == 0.0 || longest >= MIN_LENGTH {
+            return Ok(());
+        }
+        Err(Error::Model {
+            model: self.name().to_owned(),
+            culprit: String::new(),
+            message: format!(
+                "its longest length is {longest:e} m, out of range: those of mechanisms from \
+                 {MIN_LENGTH:e} m to {MAX_MAGNITUDE:e} m are accepted; use another unit of length, or \
+                 write 0 for roundings"
+            ),
+        })
+    }
+}
+
+fn reach_of(pose: Pose) -> f64 {
+    largest(pose.translation)
+}
+
+/// Largest coordinate: squares of short lengths would be zero.
+fn largest(x: Vec3) -> f64 {
+    x.to_array().iter().fold(0.0, |most, x| x.abs().max(most))
+}
+
+/// A length of a shape (m), zero only if it has no extent.
+fn size(shape: &Geometry) -> f64 {
+    match shape {
+        Geometry::Box { size } => largest(*size),
+        Geometry::Ellipsoid { radii } => largest(*radii),
+        Geometry::Cylinder { radius, length } | Geometry::Capsule { radius, length } => {
+            radius.abs().max(length.abs())
+        }
+        Geometry::Sphere { radius } => radius.abs(),
+        Geometry::ConvexHull { points } => points.iter().map(|p| largest(*p)).fold(0.0, f64::max),
+        // Of any size.
+        Geometry::HalfSpace | Geometry::Mesh { .. } => 1.0,
     }
 }
 

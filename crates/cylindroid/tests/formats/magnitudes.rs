@@ -51,3 +51,44 @@ fn large_limits_of_sdf_are_none() {
     let limits = read_sdf(text).unwrap().coordinates()[0].limits;
     assert_eq!((limits.lower, limits.upper), (f64::NEG_INFINITY, f64::INFINITY));
 }
+
+/// Lengths that are all below the least one are refused in every format; a rounding is not.
+#[test]
+fn mechanisms_without_a_size_are_refused() {
+    let urdf = "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='continuous'>\
+                <origin xyz='# 0 0'/><parent link='a'/><child link='b'/></joint>@</robot>";
+    let of_urdf = "<link name='c'/><joint name='k' type='fixed'><origin xyz='0 0 0.1'/>\
+                   <parent link='b'/><child link='c'/></joint>";
+    let sdf = "<sdf version='1.9'><model name='r'><link name='a'/><link name='b'/>@\
+               <joint name='j' type='revolute'><pose relative_to='a'># 0 0 0 0 0</pose>\
+               <parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>";
+    let of_sdf = "<frame name='f' attached_to='b'><pose>0 0 0.1 0 0 0</pose></frame>";
+    let mjcf = "<mujoco model='r'><worldbody><body name='b' pos='# 0 0'><joint name='j'/>@</body>\
+                </worldbody></mujoco>";
+    let of_mjcf = "<site name='s' pos='0 0 0.1'/>";
+    let toml = "name = 'r'\n[[joint]]\nname = 'j'\ntype = 'revolute'\nbetween = ['ground', 'b']\n\
+                origin = [#, 0, 0]\naxis = [0, 0, 1]\n@";
+    let of_toml = "[[frame]]\nname = 'f'\nlink = 'b'\nxyz = [0, 0, 0.1]\n";
+    let all: [(&str, &str, fn(&str) -> Result<Mechanism>); 4] = [
+        (urdf, of_urdf, read_urdf),
+        (sdf, of_sdf, read_sdf),
+        (mjcf, of_mjcf, read_mjcf),
+        (toml, of_toml, read_toml),
+    ];
+    for (text, more, read) in all {
+        for (length, accepted) in [("1e-9", true), ("0", true), ("1e-13", false), ("1e-30", false)]
+        {
+            let tiny = text.replace('#', length);
+            match read(&tiny.replace('@', "")) {
+                Ok(_) => assert!(accepted, "{tiny}"),
+                Err(error) => {
+                    let told = format!("longest length is {length} m");
+                    let message = error.to_string();
+                    assert!(!accepted && message.contains(&told), "{tiny}: {message}");
+                }
+            }
+            let with_others = read(&tiny.replace('@', more));
+            assert!(with_others.is_ok(), "{tiny}: {}", with_others.unwrap_err());
+        }
+    }
+}

@@ -15,6 +15,7 @@ mod dh;
 mod elasticity;
 mod fk;
 mod joint_limits;
+mod large_models;
 mod lax;
 mod limits;
 mod load;

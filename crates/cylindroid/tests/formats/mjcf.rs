@@ -266,6 +266,29 @@ fn actuators_give_actuated_joints_and_effort_limits() {
     assert_eq!(read(&without).actuated().collect::<Vec<_>>(), [0]);
 }
 
+/// MuJoCo normalises the quaternions of key frames, zero to the identity.
+#[test]
+fn home_may_have_quaternions_of_zero() {
+    let text =
+        world("<body><freejoint name='f'/><body><joint name='b' type='ball'/></body></body>");
+    let key = "<keyframe><key name='home' qpos='1 2 3 0 0 0 0 0 0 0 0'/></keyframe></mujoco>";
+    let m = read(&text.replace("</mujoco>", key));
+    assert_eq!(m.home(), [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+}
+
+/// MuJoCo refuses them.
+#[test]
+fn shapes_of_one_name_are_noted() {
+    let two = "<body><joint/><geom name='g' size='1'/><geom name='g' size='2'/></body>";
+    let m = read(&world(two));
+    assert_eq!(m.links()[1].visuals.len(), 2);
+    let note = &m.report().ignored[0];
+    assert!(note.what.starts_with("name of a <geom>") && note.what.contains('g'), "{note:?}");
+    assert!(note.why.contains("MuJoCo refuses"), "{note:?}");
+    let one = "<body><joint/><geom name='g' size='1'/><geom size='2'/><geom size='2'/></body>";
+    assert_eq!(read(&world(one)).report().ignored, []);
+}
+
 #[test]
 fn shapes_have_whole_sizes() {
     use cylindroid::model::Geometry;

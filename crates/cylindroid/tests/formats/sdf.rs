@@ -367,6 +367,33 @@ fn includes_are_nested_models() {
     assert!(error.contains("includes more than 1000 files"), "{error}");
 }
 
+/// A world whose objects are files: each is noted once, with the reason, and what they include is
+/// not noted as unknown.
+#[test]
+fn included_objects_of_a_world_are_noted_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, inside: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("<sdf version='1.9'>{inside}</sdf>")).unwrap();
+        path
+    };
+    write("lid.sdf", "<model name='lid'><link name='l'/></model>");
+    write(
+        "box.sdf",
+        "<model name='box'><link name='b'/><include><uri>lid.sdf</uri></include></model>",
+    );
+    let world = write(
+        "world.sdf",
+        "<world name='w'><model name='arm'><link name='a'/><link name='b'/>\
+         <joint name='j' type='revolute'><parent>a</parent><child>b</child>\
+         <axis><xyz>0 0 1</xyz></axis></joint></model>\
+         <include><uri>box.sdf</uri></include></world>",
+    );
+    let said = report(&cylindroid::load_file(&world).unwrap());
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert!(said.contains("further <model> (box)"), "{said}");
+}
+
 /// Nothing but nested models: the canonical link is that of the first.
 #[test]
 fn a_model_without_links_has_the_canonical_link_of_its_first_model() {

@@ -191,7 +191,8 @@ fn guesses_and_fixed_coordinates() {
     }
 }
 
-/// Limits are named where they are the reason; nothing is proven where no solution exists at all.
+/// Limits are named where they are the reason, also where they prove the target out of reach; inside of
+/// the reach of each chain nothing is proven.
 #[test]
 fn misses_have_a_reason() {
     let base = [[-1.0, -0.8], [1.2, -0.7], [0.1, 1.3]];
@@ -200,6 +201,7 @@ fn misses_have_a_reason() {
     let goal = [Goal::frame(short.reference(), Task::PLANAR, at(0.5, 0.0))];
     let miss = solve(&short, &goal, &IkOptions::default()).unwrap();
     assert!(!miss.success && miss.position_error > 0.05);
+    assert!(miss.out_of_reach.is_some_and(|(distance, length)| distance > length));
     let Some(MissReason::Limits { joints }) = &miss.reason else { panic!("{:?}", miss.reason) };
     assert!(joints.iter().any(|j| j == "leg0"), "{joints:?}");
     let state = short.state(&miss.q).unwrap();
@@ -207,6 +209,10 @@ fn misses_have_a_reason() {
 
     let five_bar = five_bar();
     let goal = [Goal::frame(five_bar.reference(), XY, at(9.0, 0.0))];
+    let miss = solve(&five_bar, &goal, &IkOptions::default()).unwrap();
+    assert!(matches!(miss.reason, Some(MissReason::OutOfReach { .. })), "{:?}", miss.reason);
+    // In the hole around the base of the crank.
+    let goal = [Goal::frame(five_bar.reference(), XY, at(0.1, 0.1))];
     let miss = solve(&five_bar, &goal, &IkOptions::default()).unwrap();
     assert_eq!(miss.reason, Some(MissReason::NotProven));
 }
@@ -240,4 +246,49 @@ fn goals_that_have_no_answer_are_refused() {
     assert!(error.contains("ik::solve"), "{error}");
     let other = catalogue::load("panda").unwrap().tool();
     assert!(solve(&stewart, &[Goal::pose(other, Pose::IDENTITY)], &options).is_err());
+}
+
+/// The joints of the tree that carry a frame are its longest reach, whatever the loops.
+#[test]
+fn targets_beyond_the_chain_of_a_frame_need_no_search() {
+    let options = IkOptions::default();
+    for name in ["five-bar", "delta", "3rrr"] {
+        let mechanism = catalogue::load(name).unwrap();
+        let home = mechanism.state(mechanism.home()).unwrap();
+        let mut proven = 0;
+        for frame in mechanism.frame_ids() {
+            let at = home.pose(frame).unwrap();
+            for task in [Task::POSE, XY, Task::POSITION, Task::POINTING] {
+                let near = solve(&mechanism, &[Goal::frame(frame, task, at)], &options).unwrap();
+                assert!(near.success && near.out_of_reach.is_none(), "{name}");
+                let far = Pose { translation: at.translation + Vec3::X * 50.0, ..at };
+                let goal = Goal::frame(frame, task, far);
+                let missed = solve(&mechanism, &[goal], &options).unwrap();
+                assert!(!missed.success, "{name}");
+                let Some((distance, length)) = missed.out_of_reach else {
+                    continue;
+                };
+                assert!(distance > length && distance > 40.0 && length < 10.0, "{name}");
+                assert!(missed.restarts == 0 && missed.q.len() == mechanism.n());
+                let proof = MissReason::OutOfReach { distance, length };
+                let reason = missed.reason.unwrap();
+                assert!(reason == proof || reason.name() == "limits", "{name}: {reason}");
+                proven += 1;
+            }
+        }
+        assert!(proven > 3, "{name}: {proven}");
+    }
+    // The legs of a Stewart platform are long enough without their limits alone.
+    let stewart = catalogue::load("stewart").unwrap();
+    let goal = Goal::frame(stewart.frame("rod5").unwrap(), Task::POSITION, at(3.0, 0.0));
+    let missed = solve(&stewart, &[goal], &options).unwrap();
+    assert!(missed.out_of_reach.is_some() && missed.restarts == 0 && !missed.success);
+    // A slide in the plane: its height counts for nothing.
+    let planar = catalogue::load("3rrr").unwrap();
+    let frame = planar.reference();
+    let mut at = planar.state(planar.home()).unwrap().pose(frame).unwrap();
+    at.translation.z = 50.0;
+    let goal = Goal::frame(frame, Task::POSITION, at);
+    let found = solve(&planar, &[goal], &options).unwrap();
+    assert!(found.reason.is_none_or(|reason| !matches!(reason, MissReason::OutOfReach { .. })));
 }

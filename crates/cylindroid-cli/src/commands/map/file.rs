@@ -7,6 +7,7 @@ use cylindroid::{Error, Mechanism, Result};
 use serde::Serialize;
 
 use super::report::MapJson;
+use crate::output_file;
 
 #[derive(Debug, Serialize)]
 struct FileJson<'a> {
@@ -65,10 +66,11 @@ pub(super) fn write(robot: &Mechanism, map: &Map, report: &MapJson<'_>, path: &P
     if extension(path) == "json" {
         let text = serde_json::to_string(&FileJson { report, columns, rows });
         let text = text.map_err(|e| cannot(e.to_string()))?;
-        return std::fs::write(path, text + "\n").map_err(|e| cannot(e.to_string()));
+        return output_file::write(path, text + "\n").map_err(|e| cannot(e.to_string()));
     }
     let failed = |e: csv::Error| cannot(e.to_string());
-    let mut writer = csv::Writer::from_path(path).map_err(failed)?;
+    let mut writer =
+        csv::Writer::from_writer(output_file::create(path).map_err(|e| cannot(e.to_string()))?);
     writer.write_record(&columns).map_err(failed)?;
     for row in rows {
         writer.write_record(row.iter().map(ToString::to_string)).map_err(failed)?;

@@ -6,6 +6,8 @@ use std::path::Path;
 use cylindroid::sweep::{Axis, Map};
 use cylindroid::{Error, Mechanism, Result};
 
+use crate::output_file;
+
 fn refused(path: &Path, reason: String) -> Error {
     Error::InvalidOption { option: "--mesh", value: path.display().to_string(), reason }
 }
@@ -46,7 +48,7 @@ pub(super) fn check_map(map: &Map, path: &Path) -> Result<()> {
 
 /// Writes the file.
 pub(super) fn write(robot: &Mechanism, map: &Map, path: &Path) -> Result<()> {
-    std::fs::write(path, text(robot, map)).map_err(|error| Error::Io {
+    output_file::write(path, text(robot, map)).map_err(|error| Error::Io {
         path: path.to_owned(),
         action: "write",
         message: error.to_string(),

@@ -6,6 +6,8 @@ use std::path::Path;
 use cylindroid::sweep::{Progress, Sweep, Table, Values};
 use cylindroid::{Error, Result};
 
+use crate::output_file;
+
 /// Rows of a CSV file at most.
 const MOST: u64 = 1_000_000;
 /// Rows computed at once.
@@ -28,6 +30,7 @@ pub(super) fn write(
         });
     }
     let cannot = |message: String| Error::Io { path: path.to_owned(), action: "write", message };
+    output_file::check(path).map_err(|e| cannot(e.to_string()))?;
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".tmp");
     let temporary = path.with_file_name(name);
@@ -53,7 +56,8 @@ fn lines(
 ) -> Result<bool> {
     let failed = |e: csv::Error| cannot(e.to_string());
     let all = sweep.rows();
-    let mut writer = csv::Writer::from_path(path).map_err(failed)?;
+    let file = output_file::create(path).map_err(|e| cannot(e.to_string()))?;
+    let mut writer = csv::Writer::from_writer(file);
     writer.write_record(sweep.columns().iter().map(|c| &c.name)).map_err(failed)?;
     let mut start = 0;
     while start < all {

@@ -23,7 +23,7 @@ use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
 
 /// Maximum number of steps: a dozen suffice if there is an assembly nearby.
-const MAX_STEPS: usize = 200;
+pub(super) const MAX_STEPS: usize = 200;
 /// Initial damping, and the largest that is tried, relative to the largest singular value [-].
 const DAMPING: (f64, f64) = (1e-3, 1e8);
 /// Largest change of a joint in one step [rad, or characteristic lengths].
@@ -75,6 +75,16 @@ pub struct Assembly {
 #[doc(alias = "loop closure")]
 #[doc(alias = "Levenberg-Marquardt")]
 pub fn assemble(mechanism: &Mechanism, guess: &[f64], prescribed: &[usize]) -> Result<Assembly> {
+    assemble_within(mechanism, guess, prescribed, MAX_STEPS)
+}
+
+/// [`assemble`] in at most so many steps.
+pub(super) fn assemble_within(
+    mechanism: &Mechanism,
+    guess: &[f64],
+    prescribed: &[usize],
+    most_steps: usize,
+) -> Result<Assembly> {
     mechanism.check_q("guess", guess)?;
     let free = free_places(mechanism, prescribed)?;
     let length = mechanism.reach();
@@ -85,7 +95,7 @@ pub fn assemble(mechanism: &Mechanism, guess: &[f64], prescribed: &[usize]) -> R
     }
     let mut damping = DAMPING.0;
     let mut steps = 0;
-    while now.residual_norm > 0.0 && steps < MAX_STEPS && damping < DAMPING.1 {
+    while now.residual_norm > 0.0 && steps < most_steps && damping < DAMPING.1 {
         steps += 1;
         let q = damped_step(mechanism, &now, &free, damping);
         let next = LoopClosure::at(mechanism, &q, &free, length)?;

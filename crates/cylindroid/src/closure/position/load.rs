@@ -1,17 +1,23 @@
 //! Loading of models, with the assembly of home where a file closes loops by frames.
 //!
 //! Formula  home: the assembly nearest to the configuration of the file; if there is none, the
-//!          nearest that random restarts find
+//!          nearest that random restarts find. Steps and restarts are as many as [`MOST_WORK`] allows
 //! Why so   the loaders belong to the model and come before kinematics. They take the assembly as
 //!          an argument, so that files included by others are assembled too
 //! Checked  tests/formats/closures.rs, tests/formats/load.rs
 
 use std::path::Path;
 
-use super::assembly::{Assembly, assemble};
+use super::assembly::{Assembly, MAX_STEPS, assemble_within};
 use super::assembly_modes::{ModeOptions, assembly_modes};
+use super::loop_closure::LoopClosure;
 use crate::error::{Error, Result};
 use crate::model::{Dimension, JointKind, LoopJoint, Mechanism, formats};
+
+/// The work of assembling home, in products of the decompositions of the Jacobian: rows by columns
+/// by the smaller of both for a step. All starts are made up to about 40 constraints on 40
+/// coordinates; more take a second or so.
+const MOST_WORK: f64 = 1e9;
 
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
@@ -79,20 +85,35 @@ pub(super) fn read_text(text: &str, path: &Path, parameters: &[(&str, f64)]) -> 
 
 /// The same mechanism with an assembled home, where closures by frames may be open.
 fn close_home(mechanism: &Mechanism) -> Result<Mechanism> {
-    let first = assemble(mechanism, mechanism.home(), &[])?;
+    let jacobian = LoopClosure::of(mechanism, mechanism.home())?.jacobian;
+    let (rows, columns) = (jacobian.rows() as f64, jacobian.cols() as f64);
+    let steps = (MOST_WORK / (rows * columns * rows.min(columns)).max(1.0)) as usize;
+    let first = assemble_within(mechanism, mechanism.home(), &[], steps.min(MAX_STEPS))?;
     if first.closed {
         return Ok(mechanism.with_assembled_home(first.q));
     }
-    let options = ModeOptions::default();
-    let found = assembly_modes(mechanism, mechanism.home(), &[], options)?;
-    match found.modes.into_iter().next() {
-        Some(nearest) => Ok(mechanism.with_assembled_home(nearest.assembly.q)),
-        None => Err(refuse(mechanism, &first, options.starts)?),
+    let usual = ModeOptions::default();
+    let options = ModeOptions { starts: (steps / MAX_STEPS).max(1).min(usual.starts), ..usual };
+    if options.starts > 1 {
+        let found = assembly_modes(mechanism, mechanism.home(), &[], options)?;
+        if let Some(nearest) = found.modes.into_iter().next() {
+            return Ok(mechanism.with_assembled_home(nearest.assembly.q));
+        }
     }
+    let mut searched = format!("home and {} random restarts within the limits", options.starts - 1);
+    if options.starts < usual.starts {
+        searched += &format!(
+            " (a mechanism of {columns} coordinates and {rows} constraints is too large for \
+             {} steps and {} restarts)",
+            MAX_STEPS,
+            usual.starts - 1
+        );
+    }
+    Err(refuse(mechanism, &first, &searched)?)
 }
 
 /// The closure that is open farthest at the best attempt from home.
-fn refuse(mechanism: &Mechanism, first: &Assembly, starts: usize) -> Result<Error> {
+fn refuse(mechanism: &Mechanism, first: &Assembly, searched: &str) -> Result<Error> {
     let state = mechanism.state(&first.q)?;
     let gap = |l: &LoopJoint| {
         let on_a = state.link_pose(l.a) * l.link_a_from_joint;
@@ -129,13 +150,9 @@ fn refuse(mechanism: &Mechanism, first: &Assembly, starts: usize) -> Result<Erro
     let links = mechanism.links();
     let message = format!(
         "closure '{}' cannot be closed: its frames on '{}' and '{}' remain {open} apart, in the \
-         best configuration found from home and {} random restarts within the limits; check the \
-         frames, give a start nearer to an assembly (home, or start of a [[robot]]), or widen \
+         best configuration found from {searched}; check the frames, give a start nearer to an assembly (home, or start of a [[robot]]), or widen \
          the limits",
-        joint.name,
-        links[joint.a].name,
-        links[joint.b].name,
-        starts - 1
+        joint.name, links[joint.a].name, links[joint.b].name
     );
     Ok(Error::Model { model: mechanism.name().to_owned(), culprit: joint.name.clone(), message })
 }

@@ -3,10 +3,11 @@
 //!
 //! Why so   MJCF and SDF differ in the search for a file alone
 //! Fails    more than [`MOST_FILES`] files, more than [`LARGEST_INCLUSION`] bytes, a file that cannot
-//!          be read: at the `<include>`
+//!          be read: at the `<include>`; more elements than one file may have: at the file
 //! Checked  tests/formats/limits.rs, tests/formats/mjcf.rs::includes_*,
 //!          tests/formats/sdf.rs::includes_*
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -17,6 +18,39 @@ use super::text_file::{self, TextFile};
 use super::xml::{self, Reader};
 use super::xml_limits;
 use crate::error::{Error, Result, shown};
+
+/// The bytes and elements of the files of a model so far: of those that it includes, and those that
+/// it attaches with all that they include.
+#[derive(Debug, Default)]
+pub(super) struct Together {
+    bytes: Cell<usize>,
+    elements: Cell<usize>,
+}
+
+impl Together {
+    /// Counts the text of a file that a model brings in; otherwise returns the limit.
+    pub(super) fn count_text(&self, text: &str) -> std::result::Result<(), String> {
+        self.bytes.set(self.bytes.get() + text.len());
+        if self.bytes.get() <= LARGEST_INCLUSION {
+            return Ok(());
+        }
+        Err(format!("the included files exceed {} MiB together", LARGEST_INCLUSION >> 20))
+    }
+
+    fn count_elements(&self, source: &Source<'_>, document: &Document<'_>) -> Result<()> {
+        const MOST: usize = xml_limits::MOST_ELEMENTS;
+        let own = document.descendants().filter(Node::is_element).count();
+        self.elements.set(self.elements.get() + own);
+        if self.elements.get() <= MOST {
+            return Ok(());
+        }
+        let message = format!(
+            "the files of the model up to this one have more than {MOST} elements together, the \
+             limit of this reader"
+        );
+        Err(source.error(Reader::tag(document.root_element()), message, ""))
+    }
+}
 
 /// Included files; SDF may include a file several times.
 const MOST_FILES: usize = 1000;
@@ -44,10 +78,10 @@ impl Included {
 /// `<include>`, the element and the files before it; `None` leaves the file out.
 pub(super) fn gather(
     main: &Source<'_>,
+    together: &Together,
     find: impl Fn(&Source<'_>, Node<'_, '_>, &[Included]) -> Result<Option<PathBuf>>,
 ) -> Result<Vec<Included>> {
     let mut found: Vec<Included> = Vec::new();
-    let mut bytes = 0;
     for file in 0_usize.. {
         // The text is moved out while its own includes are read.
         let own = match file.checked_sub(1).map(|i| found.get_mut(i)) {
@@ -59,7 +93,9 @@ pub(super) fn gather(
             None => *main,
             Some((path, text)) => Source { format: main.format, path, text },
         };
-        for node in xml::document(&source)?.descendants().filter(|n| n.has_tag_name("include")) {
+        let document = xml::document(&source)?;
+        together.count_elements(&source, &document)?;
+        for node in document.descendants().filter(|n| n.has_tag_name("include")) {
             let Some(path) = find(&source, node, &found)? else { continue };
             let refuse =
                 |message: String, help| Err(source.error(Reader::tag(node), message, help));
@@ -76,13 +112,12 @@ pub(super) fn gather(
                 }
                 Err(error) => return Err(error),
             };
-            bytes += text.len();
-            if bytes > LARGEST_INCLUSION {
-                let limit = LARGEST_INCLUSION >> 20;
-                return refuse(format!("the included files exceed {limit} MiB together"), "");
+            if let Err(message) = together.count_text(&text) {
+                return refuse(message, "");
             }
             found.push(Included { path, text, replaced, place: (file, node.range().start) });
         }
+        drop(document);
         if let (Some((_, text)), Some(i)) = (own, file.checked_sub(1)) {
             found[i].text = text;
         }

@@ -142,7 +142,12 @@ impl IgnoredLog {
         }
     }
 
-    /// True if there is a note at this file and offset.
+    /// Accounts for a part at a file and offset without a note of its own.
+    pub(super) fn pass_over(&mut self, place: (usize, usize)) {
+        self.places.insert(place);
+    }
+
+    /// True if the part at this file and offset is accounted for.
     pub(super) fn has(&self, place: (usize, usize)) -> bool {
         self.places.contains(&place)
     }

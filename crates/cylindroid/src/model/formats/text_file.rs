@@ -1,7 +1,7 @@
 //! The text of a model file.
 //!
 //! Valid    UTF-8, with or without a byte order mark; XML that declares ISO-8859-1 (Latin-1)
-//! Fails    those of [`read_regular_file`]; UTF-16; TOML in another encoding. XML with bytes that are
+//! Fails    those of [`read_regular_file`]; a text of more than [`LARGEST_FILE`] bytes; UTF-16; TOML in another encoding. XML with bytes that are
 //!          not UTF-8 is read with a note: old files have names and comments in other encodings, and
 //!          their numbers are ASCII in all of them
 //! Checked  tests/formats/limits.rs, tests/formats/srdf.rs, tests/formats/joint_limits.rs
@@ -20,6 +20,16 @@ pub(super) struct TextFile {
     pub(super) text: String,
     /// Byte offset in `text` of the first character that replaces bytes that are not UTF-8.
     pub(super) replaced: Option<usize>,
+}
+
+/// Returns an error for a text that is larger than a model file may be.
+pub(super) fn check_size(source: &Source<'_>) -> Result<()> {
+    if source.text.len() as u64 <= LARGEST_FILE {
+        return Ok(());
+    }
+    let message =
+        format!("the text is larger than {} MiB, the limit of a model file", LARGEST_FILE >> 20);
+    Err(source.error(0..1, message, ""))
 }
 
 /// Subject of the note that bytes were replaced.

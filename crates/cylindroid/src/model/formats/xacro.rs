@@ -6,7 +6,7 @@
 //! Fails    what the program refuses; more than [`LARGEST_FILE`] of output, or more than
 //!          [`LONGEST`]
 //! Why so   xacro evaluates Python expressions, so nothing but Python expands all of it
-//! Checked  tests/formats/load.rs
+//! Checked  tests/formats/load.rs (and xacro.rs of the tests of the command line)
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -18,6 +18,8 @@ use crate::error::{Error, Result};
 
 /// Time for the program to answer.
 const LONGEST: Duration = Duration::from_mins(1);
+/// Longest message of the program that is repeated, in characters.
+const LONGEST_MESSAGE: usize = 1000;
 
 /// The URDF that a file expands to; `None` where the program is not installed.
 pub(super) fn expand(path: &Path) -> Result<Option<String>> {
@@ -35,7 +37,9 @@ pub(super) fn expand(path: &Path) -> Result<Option<String>> {
         let message = scope.spawn(|| read(err));
         let ended = wait(&mut child);
         let joined = (text.join().unwrap_or_default(), message.join().unwrap_or_default());
-        ended.map(|succeeded| (succeeded.then_some(joined.0), joined.1))
+        // A program that writes on when nobody reads any more fails for that reason alone.
+        let is_long = joined.0.len() as u64 > LARGEST_FILE;
+        ended.map(|succeeded| ((succeeded || is_long).then_some(joined.0), joined.1))
     })
     .map_err(|message| refuse(format!("the program xacro {message}")))?;
     match text {
@@ -48,10 +52,31 @@ pub(super) fn expand(path: &Path) -> Result<Option<String>> {
             Err(refuse(format!("xacro wrote more than {limit} MiB, the limit of a model file")))
         }
         None => {
-            let message = String::from_utf8_lossy(&message);
-            let last = message.lines().rfind(|l| !l.trim().is_empty()).unwrap_or("no message");
-            Err(refuse(format!("xacro refuses it: {}", last.trim())))
+            Err(refuse(format!("xacro refuses it: {}", cause(&String::from_utf8_lossy(&message)))))
         }
+    }
+}
+
+/// The last error of the program's messages with the places that follow it, in one line.
+fn cause(messages: &str) -> String {
+    let lines: Vec<&str> = messages.lines().map(str::trim).collect();
+    let is_error = |line: &&str| {
+        let kind = line.split_once(':').map(|(kind, _)| kind.to_ascii_lowercase());
+        kind.is_some_and(|kind| kind.ends_with("error"))
+    };
+    let is_place = |line: &&str| {
+        let starts = ["when ", "in file:", "instantiated from:", "included from:"];
+        starts.iter().any(|start| line.starts_with(start))
+    };
+    let last = lines.iter().rposition(|line| !line.is_empty() && !is_place(line));
+    let first = lines.iter().rposition(is_error).or(last).unwrap_or(0);
+    let told = lines[first.min(lines.len())..].iter().take_while(|line| !line.is_empty());
+    let told = told.map(|line| line.strip_prefix("error: ").unwrap_or(line).trim());
+    let text = told.collect::<Vec<_>>().join("; ");
+    match text.char_indices().nth(LONGEST_MESSAGE) {
+        _ if text.is_empty() => "no message".to_owned(),
+        None => text,
+        Some((end, _)) => format!("{}...", &text[..end]),
     }
 }
 

@@ -94,6 +94,21 @@ impl<'a> Reader<'a> {
         source.unwrap_or(&self.source).error(span, message, help)
     }
 
+    /// Returns an error at an element with which a model has more links than this reader allows.
+    pub(super) fn check_links(&self, node: Node<'_, '_>, links: usize) -> Result<()> {
+        const MOST: usize = xml_limits::MOST_LINKS;
+        if links <= MOST {
+            return Ok(());
+        }
+        let message = format!("the model has more than {MOST} links, the limit of this reader");
+        Err(self.error(node, Self::tag(node), message, ""))
+    }
+
+    /// Accounts for an element, and all that it contains, about which another note speaks.
+    pub(super) fn pass_over(&mut self, node: Node<'_, '_>) {
+        self.notes.pass_over((self.file(node), node.range().start));
+    }
+
     /// Logs an ignored part of a node; `name` is that of its owner (may be empty).
     pub(super) fn note(
         &mut self,

@@ -1,4 +1,4 @@
-//! Limits of XML models, verified before the text is parsed: elements, nesting, attributes, names,
+//! Limits of XML models, verified before the text is parsed: size, elements, nesting, attributes, names,
 //! entities; and the prefixes that elements use without a declaration.
 //!
 //! Why so   a parser allocates for every element and compares all attributes of an element, so a
@@ -11,10 +11,13 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::span::Source;
+use super::text_file;
 use crate::error::Result;
 
-/// Elements of a file: a URDF of 100 000 links has 600 000.
+/// Elements of all files of a model: a URDF of 100 000 links has 600 000.
 pub(super) const MOST_ELEMENTS: usize = 1_000_000;
+/// Links of a model: with joints, shapes and notes a link takes about 3 kB while it is read.
+pub(super) const MOST_LINKS: usize = 120_000;
 /// Elements that contain one another.
 pub(super) const DEEPEST: usize = 1000;
 /// Attributes of one element.
@@ -139,6 +142,7 @@ fn document_type(text: &str) -> Option<(usize, bool)> {
 
 /// Returns an error for a text that exceeds a limit.
 pub(super) fn check(source: &Source<'_>) -> Result<()> {
+    text_file::check_size(source)?;
     let (mut elements, mut depth, mut attributes, mut namespaces) = (0, 0, 0, 0);
     let exceeds = |at: usize, what: &str, most: usize| {
         let message = format!("the file has more than {most} {what}, the limit of this reader");
@@ -229,6 +233,9 @@ impl<'t> Iterator for Attributes<'t> {
 /// The text with `prefix.` for `prefix:` in the names of elements and attributes where no
 /// `xmlns:prefix` declares it: programs for robots do not require declarations.
 pub(super) fn without_undeclared(text: &str) -> Cow<'_, str> {
+    if text.len() as u64 > text_file::LARGEST_FILE {
+        return Cow::Borrowed(text); // refused by `check`
+    }
     let mut declared = BTreeSet::from(["xml", "xmlns", "xacro"]);
     // That of the root must be declared.
     declared.extend(root(text).and_then(|name| name.split_once(':')).map(|(prefix, _)| prefix));

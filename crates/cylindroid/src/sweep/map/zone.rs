@@ -75,7 +75,7 @@ pub struct ZoneOptions {
     pub start: Option<Vec<f64>>,
     /// Position limits are bounds too; otherwise they are ignored.
     pub limits: bool,
-    /// Number of rays beside those along the components.
+    /// Number of rays beside those along the components. Of one component those are all.
     pub rays: usize,
     /// Selects other rays.
     pub seed: u64,

@@ -220,7 +220,8 @@ impl Search {
             obstruction: tracer(Vanishing::Singularity(parts.path)),
             event: tracer(Vanishing::Singularity(parts.event)),
             limit: tracer(Vanishing::Limit { coordinate: 0, value: 0.0 }),
-            count: options.rays,
+            // Of one component the two ways, which are fixed, are all rays there are.
+            count: if components.len() == 1 { 0 } else { options.rays },
             problem,
             zone,
             about,

@@ -2,7 +2,7 @@
 
 use cylindroid::Mechanism;
 use cylindroid::catalogue;
-use cylindroid::model::{JointKind, JointSpec, Limits};
+use cylindroid::model::{Geometry, JointKind, JointSpec, Limits, Visual};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
 
 use crate::support::assert_close;
@@ -81,4 +81,54 @@ fn it_does_not_depend_on_the_drawn_points() {
         b.build().unwrap().reach()
     };
     assert_close("slid", &[of(0.3), of(-5.0)], &[of(0.0), of(0.0)], 1e-12);
+}
+
+/// Two axes that meet but for a rounding, with a tool at this distance.
+fn pan_and_tilt(rounding: f64, tool: f64) -> cylindroid::Result<Mechanism> {
+    let mut b = Mechanism::builder("head");
+    for (name, parent, child, axis) in [("pan", "base", "a", Vec3::Z), ("tilt", "a", "b", Vec3::Y)]
+    {
+        b.joint(JointSpec {
+            axis,
+            parent_from_joint: Pose::from_translation(Vec3::X * rounding),
+            ..JointSpec::new(name, JointKind::Revolute, parent, child)
+        });
+    }
+    b.frame("camera", "b", Pose::from_translation(Vec3::X * tool)).reference("b");
+    b.build()
+}
+
+#[test]
+fn roundings_are_no_lengths() {
+    for rounding in [0.0, 6.1e-17, 1e-30, 1e-300, 5e-324] {
+        let head = pan_and_tilt(rounding, 0.1).unwrap();
+        assert!(head.reach() == 1.0, "{rounding:e}: {}", head.reach());
+        let camera = head.with_tool("camera").unwrap().reach();
+        assert!(camera > 0.05 && camera < 0.5, "{rounding:e}: {camera}");
+    }
+    assert!(pan_and_tilt(0.0, 0.0).unwrap().reach() == 1.0);
+}
+
+/// Lengths that are all too short are those of another unit.
+#[test]
+fn mechanisms_without_a_size_are_refused() {
+    for (rounding, tool) in [(6.1e-17, 0.0), (1e-30, 2e-30), (0.0, 5e-324), (0.0, -9e-13)] {
+        let error = pan_and_tilt(rounding, tool).unwrap_err();
+        let longest = format!("longest length is {:e} m", f64::max(rounding, tool.abs()));
+        let message = error.to_string();
+        assert!(message.contains("'head'") && message.contains(&longest), "{message}");
+    }
+    // A shape is a length too.
+    let mut b = Mechanism::builder("ball");
+    b.joint(JointSpec {
+        parent_from_joint: Pose::from_translation(Vec3::X * 6.1e-17),
+        ..JointSpec::new("turn", JointKind::Revolute, "base", "ball")
+    });
+    assert!(b.clone().build().is_err());
+    let geometry = Geometry::Sphere { radius: 0.1 };
+    b.collision("ball", Visual { geometry, ..Visual::default() });
+    assert!(b.build().is_ok());
+    // Nanometres work.
+    let small = pan_and_tilt(1e-9, 1e-9).unwrap().reach();
+    assert!(small > 0.5e-9 && small < 4e-9, "{small}");
 }

@@ -9,7 +9,10 @@ use super::attributes::used;
 use super::defaults::Element;
 use crate::error::Result;
 use crate::model::JointKind;
-use crate::spatial::Quaternion;
+use crate::spatial::{Quaternion, Rotation};
+
+/// MuJoCo takes a quaternion of a smaller norm for the identity (`mju_normalize4`).
+const SMALLEST_QUATERNION: f64 = 1e-15;
 
 /// Elements whose default classes apply to actuators.
 const ACTUATORS: [&str; 10] = [
@@ -55,14 +58,9 @@ impl<'d> Mjcf<'d> {
                 self.reader.note(root, "motor at a joint that follows several", why, name);
                 self.joints[i].actuated = false;
             }
-            let mut at = i;
-            for _ in 0..self.joints.len() {
-                let Some(mimic) = &self.joints[at].mimic else { break };
-                let Some(&next) = self.joint_index.get(&mimic.joint) else { break };
-                at = next;
-            }
-            if at != i && self.joints[i].actuated {
-                self.joints[at].actuated = true;
+            if self.joints[i].actuated {
+                let end = self.couplings.end(i);
+                self.joints[end].actuated = true;
             }
         }
         Ok(())
@@ -140,9 +138,12 @@ impl<'d> Mjcf<'d> {
             let position = own.len().saturating_sub(4);
             let q = match *own {
                 [.., w, x, y, z] => {
-                    let rotation = Quaternion { w, x, y, z }
-                        .rotation()
-                        .map_err(|e| self.reader.refuse(home, "qpos", e.to_string()))?;
+                    let given = Quaternion { w, x, y, z };
+                    let is_zero = [w, x, y, z].iter().map(|c| c * c).sum::<f64>().sqrt()
+                        < SMALLEST_QUATERNION;
+                    let rotation = if is_zero { Ok(Rotation::IDENTITY) } else { given.rotation() };
+                    let rotation =
+                        rotation.map_err(|e| self.reader.refuse(home, "qpos", e.to_string()))?;
                     [&own[..position], &rotation.log().to_array()].concat()
                 }
                 _ => own.to_vec(),

@@ -9,6 +9,7 @@
 //! Source   mujoco.readthedocs.io, XML reference, attach, asset/model
 //! Checked  tests/formats/mjcf_copies.rs::attached_*
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use roxmltree::Node;
@@ -54,6 +55,9 @@ impl<'d> Mjcf<'d> {
                 }
                 Err(error) => return Err(error),
             };
+            if let Err(message) = nesting.together.count_text(&text) {
+                return Err(self.reader.refuse(node, "file", message));
+            }
             let inner = Nesting { depth: nesting.depth + 1, ..nesting };
             let part = super::with_model(&text, &path, inner, |it, _| Ok(it.into_part()))?;
             let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
@@ -68,6 +72,10 @@ impl<'d> Mjcf<'d> {
             // All joints are actuated only if the model that attaches this one has no actuator.
             self.joints.iter_mut().for_each(|j| j.actuated = false);
         }
+        let mut starts: BTreeMap<String, Vec<Vec<f64>>> = BTreeMap::new();
+        for (joint, q) in self.starts {
+            starts.entry(joint).or_default().push(q);
+        }
         let mut report = LoadReport::default();
         self.reader.report(&self.files.roots(), &mut report);
         report_of_parts(&self.attachable, &mut report);
@@ -78,7 +86,7 @@ impl<'d> Mjcf<'d> {
             sums: self.sums,
             disabled_collisions: self.disabled_collisions,
             sites: self.sites,
-            starts: self.starts,
+            starts,
             world: self.world,
             first_joint: self.first_joint,
             path: self.reader.source.path.to_owned(),
@@ -118,6 +126,9 @@ impl<'d> Mjcf<'d> {
         self.reader.unread_attributes(node, &used("attach"));
         let (part, tree, prefix) = self.part_of(node)?;
         let name = |own: &str| format!("{prefix}{own}{}", placed.suffix);
+        self.reader.check_links(node, self.links.len() + tree.links.len())?;
+        let joints = &part.joints[tree.joints.clone()];
+        let own_joints: BTreeSet<&str> = joints.iter().map(|j| j.name.as_str()).collect();
         let first = self.joints.len();
         for (i, joint) in tree.joints.clone().zip(&part.joints[tree.joints.clone()]) {
             let mut own = joint.clone();
@@ -144,8 +155,7 @@ impl<'d> Mjcf<'d> {
             let mut others = part.sums.get(&joint.name).cloned().unwrap_or_default();
             let mut is_led = false;
             for mimic in own.mimic.iter_mut().chain(&mut others) {
-                let joints = &part.joints[tree.joints.clone()];
-                is_led |= !joints.iter().any(|j| j.name == mimic.joint);
+                is_led |= !own_joints.contains(mimic.joint.as_str());
                 mimic.joint = name(&mimic.joint);
             }
             if is_led {
@@ -155,7 +165,7 @@ impl<'d> Mjcf<'d> {
                 self.sums.insert(own.name.clone(), others);
             }
             self.has_attached_actuators |= own.actuated;
-            for (_, q) in part.starts.iter().filter(|s| s.0 == joint.name) {
+            for q in part.starts.get(&joint.name).into_iter().flatten() {
                 let q = if is_free { moved(place, q) } else { q.clone() };
                 self.starts.push((own.name.clone(), q));
             }

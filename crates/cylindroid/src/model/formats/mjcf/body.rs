@@ -15,7 +15,6 @@ use super::Mjcf;
 use super::attributes::used;
 use super::copies::Placed;
 use super::defaults::Element;
-use super::unique_name::unique;
 use crate::error::{Error, Result};
 use crate::model::{JointKind, JointSpec, Limits, Link};
 use crate::spatial::{Pose, Vec3};
@@ -42,7 +41,7 @@ impl<'d> Mjcf<'d> {
     /// The world and all bodies, depth-first in the order of the file.
     pub(super) fn bodies(&mut self) -> Result<()> {
         self.links.push(Link::named("world"));
-        self.link_names.insert("world".to_owned());
+        self.link_names.insert("world");
         self.world.insert("world".to_owned(), Pose::IDENTITY);
         self.reserve_names()?;
         let roots = self.files.children(self.files.main.root_element());
@@ -72,6 +71,7 @@ impl<'d> Mjcf<'d> {
         if node.has_tag_name("attach") {
             return self.attach(&placed, &parent);
         }
+        self.reader.check_links(node, self.links.len() + 1)?;
         self.reader.unread_attributes(node, &used("body"));
         if node.attribute("mocap").is_some_and(|m| m.trim() == "true") {
             let name = node.attribute("name").unwrap_or("");
@@ -85,7 +85,7 @@ impl<'d> Mjcf<'d> {
                 }
                 name
             }
-            None => unique(&mut self.link_names, &format!("body{}", self.links.len())),
+            None => self.link_names.unique(&format!("body{}", self.links.len())),
         };
         let childclass =
             self.defaults.class(&self.reader, node, "childclass")?.unwrap_or(placed.class);
@@ -191,7 +191,7 @@ impl<'d> Mjcf<'d> {
     ) -> Result<()> {
         self.first_joint.insert(body.to_owned(), self.joints.len());
         if joints.is_empty() {
-            let name = unique(&mut self.joint_names, body);
+            let name = self.joint_names.unique(body);
             let fixed = JointSpec::new(&name, JointKind::Fixed, parent, body);
             self.joints.push(JointSpec { parent_from_joint: pose, actuated: false, ..fixed });
             return Ok(());
@@ -215,7 +215,7 @@ impl<'d> Mjcf<'d> {
             let far = if last {
                 body.to_owned()
             } else {
-                unique(&mut self.link_names, &format!("{body}.{}", spec.name))
+                self.link_names.unique(&format!("{body}.{}", spec.name))
             };
             if spec.kind == JointKind::Free {
                 let turn = pose.rotation.log().to_array();
@@ -230,6 +230,7 @@ impl<'d> Mjcf<'d> {
             }
             (spec.parent, spec.child) = (near, far.clone());
             if !last {
+                self.reader.check_links(node, self.links.len() + 2)?;
                 let base = self.world.get(parent).copied().unwrap_or_default();
                 self.world.insert(far.clone(), base * pose);
                 self.links.push(Link::named(&far));
@@ -268,7 +269,7 @@ impl<'d> Mjcf<'d> {
                 return Err(reader.refuse(node, "name", message));
             }
             Some(name) => name,
-            None => unique(&mut self.joint_names, body),
+            None => self.joint_names.unique(body),
         };
         let mut spec = JointSpec::new(&name, kind, "", "");
         spec.actuated = false;

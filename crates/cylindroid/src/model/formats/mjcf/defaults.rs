@@ -5,6 +5,8 @@
 //! Source   mujoco.readthedocs.io, Modeling, default settings
 //! Checked  tests/formats/mjcf.rs::poses_*
 
+use std::collections::BTreeMap;
+
 use roxmltree::Node;
 
 use super::attributes::used;
@@ -16,6 +18,8 @@ use crate::model::magnitude;
 /// Default classes; the outermost is the first.
 pub(super) struct Defaults<'d> {
     classes: Vec<Class<'d>>,
+    /// The classes by name, of several with one name the first.
+    index: BTreeMap<&'d str, usize>,
 }
 
 struct Class<'d> {
@@ -34,8 +38,8 @@ pub(super) struct Element<'d> {
 
 impl<'d> Defaults<'d> {
     pub(super) fn read(files: &Files<'d>, reader: &mut Reader<'_>) -> Result<Self> {
-        let mut defaults =
-            Self { classes: vec![Class { name: "main", parent: None, elements: Vec::new() }] };
+        let main = Class { name: "main", parent: None, elements: Vec::new() };
+        let mut defaults = Self { classes: vec![main], index: BTreeMap::new() };
         let root = files.children(files.main.root_element());
         let outermost = root.into_iter().filter(|n| n.has_tag_name("default"));
         // All outermost defaults are one class; each nested one is a class of its own.
@@ -60,6 +64,8 @@ impl<'d> Defaults<'d> {
             }
             stack.extend(nested.into_iter().rev());
         }
+        let names = defaults.classes.iter().enumerate().rev();
+        defaults.index = names.map(|(i, class)| (class.name, i)).collect();
         Ok(defaults)
     }
 
@@ -71,8 +77,8 @@ impl<'d> Defaults<'d> {
         attribute: &str,
     ) -> Result<Option<usize>> {
         let Some(name) = node.attribute(attribute) else { return Ok(None) };
-        match self.classes.iter().position(|c| c.name == name) {
-            Some(i) => Ok(Some(i)),
+        match self.index.get(name) {
+            Some(&i) => Ok(Some(i)),
             None => {
                 let known = self.classes.iter().map(|c| c.name);
                 let unknown = Error::unknown("default class", name, known);

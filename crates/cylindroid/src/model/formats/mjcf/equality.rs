@@ -15,7 +15,6 @@ use super::Mjcf;
 use super::attributes::used;
 use super::copies::Kind;
 use super::defaults::Element;
-use super::unique_name::unique;
 use crate::error::{Error, Result};
 use crate::model::{JointKind, LoopJointSpec, Mimic};
 use crate::spatial::{Pose, Quaternion, Vec3};
@@ -85,7 +84,7 @@ impl<'d> Mjcf<'d> {
             let message = format!("{tag} '{name}' holds body '{a}' to itself");
             return Err(self.reader.refuse(node, "name", message));
         }
-        let name = unique(&mut self.joint_names, name);
+        let name = self.joint_names.unique(name);
         self.loops.push(LoopJointSpec {
             link_a_from_joint: on_a,
             link_b_from_joint: on_b,
@@ -127,17 +126,10 @@ impl<'d> Mjcf<'d> {
     /// The index of a joint that an attribute names.
     pub(super) fn joint_named(&self, node: Node<'d, 'd>, attribute: &str) -> Result<usize> {
         let name = self.copies.name(Kind::Joint, self.reader.required(node, attribute)?.trim());
-        self.joint_index.get(&name).copied().ok_or_else(|| {
+        self.couplings.index.get(&name).copied().ok_or_else(|| {
             let unknown = Error::unknown("joint", &name, self.joints.iter().map(|j| &j.name));
             self.reader.refuse(node, attribute, unknown.to_string())
         })
-    }
-
-    /// The position of a joint of one coordinate at qpos0.
-    pub(super) fn reference(&self, joint: usize) -> f64 {
-        let name = &self.joints[joint].name;
-        let start = self.starts.iter().find(|s| s.0 == *name);
-        start.and_then(|s| s.1.first().copied()).unwrap_or(0.0)
     }
 
     fn couple(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
@@ -180,31 +172,17 @@ impl<'d> Mjcf<'d> {
         if self.sums.contains_key(&self.joints[leader].name) {
             return Some("it would follow a joint that follows several");
         }
-        if self.follows(leader, follower) {
+        if self.couplings.end(leader) == follower {
             return Some("the two joints would follow one another");
         }
-        let offset = self.reference(follower) + constant - slope * self.reference(leader);
+        let reference = |joint| self.couplings.reference(joint);
+        let offset = reference(follower) + constant - slope * reference(leader);
         if !(slope.is_finite() && offset.is_finite()) {
             return Some("its coefficients are out of range");
         }
         let joint = self.joints[leader].name.clone();
         self.joints[follower].mimic = Some(Mimic { joint, multiplier: slope, offset });
+        self.couplings.follow(follower, &[leader]);
         None
-    }
-
-    /// True if `joint` follows `other`, through any number of joints, or is it.
-    fn follows(&self, joint: usize, other: usize) -> bool {
-        let mut at = joint;
-        for _ in 0..=self.joints.len() {
-            if at == other {
-                return true;
-            }
-            let Some(mimic) = &self.joints[at].mimic else { return false };
-            let Some(&next) = self.joint_index.get(&mimic.joint) else {
-                return false;
-            };
-            at = next;
-        }
-        true
     }
 }

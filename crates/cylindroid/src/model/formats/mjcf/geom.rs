@@ -70,6 +70,10 @@ impl<'d> Mjcf<'d> {
         let (pose, size) = self.place_and_size(&element)?;
         self.unread_places_and_sizes(&element);
         let name = placed.name().unwrap_or_default();
+        if !(name.is_empty() || self.geom_names.insert(&name)) {
+            let why = "two shapes have one name, which MuJoCo refuses; both are read";
+            self.reader.note(node, "name of a <geom>", why, &name);
+        }
         let Some(geometry) = self.shape(&element, &size)? else { return Ok(()) };
         let own = element.vector::<4>(&self.reader, "rgba")?;
         let material = element.text("material").and_then(|m| self.assets.colours.get(m));

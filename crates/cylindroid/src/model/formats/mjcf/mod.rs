@@ -18,6 +18,7 @@ mod attributes;
 mod body;
 mod compiler;
 mod copies;
+mod couplings;
 mod defaults;
 mod equality;
 mod files;
@@ -34,17 +35,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::rc::Rc;
 
-use roxmltree::Document;
+use roxmltree::{Document, Node};
 
 use self::assets::Assets;
 use self::attributes::{FORMAT, why_unused};
 use self::compiler::Compiler;
 use self::copies::{Copies, Kind};
+use self::couplings::Couplings;
 use self::defaults::Defaults;
 use self::files::Files;
 use self::part::{Nesting, Part, report_of_parts};
-use self::unique_name::unique;
-use super::inclusion::{self, ByInclude};
+use self::unique_name::Names;
+use super::inclusion::{self, ByInclude, Included, Together};
 use super::span::Source;
 use super::xml::{self, Reader};
 use super::xml_limits;
@@ -71,16 +73,18 @@ struct Mjcf<'d> {
     /// What else a joint follows that follows several, by its name.
     sums: BTreeMap<String, Vec<Mimic>>,
     /// Tendons that equality constraints turn into couplings.
-    tied: Vec<String>,
+    tied: BTreeSet<String>,
     /// Poses of the bodies at qpos0.
     world: BTreeMap<String, Pose>,
-    link_names: BTreeSet<String>,
-    joint_names: BTreeSet<String>,
+    link_names: Names,
+    joint_names: Names,
+    geom_names: Names,
     /// Names of bodies and joints in the file, of those that were read.
     given_bodies: BTreeSet<String>,
     given_joints: BTreeSet<String>,
-    /// Indices of the joints.
-    joint_index: BTreeMap<String, usize>,
+    couplings: Couplings<'d>,
+    /// Links between the joints of a joint that follows several.
+    made_links: usize,
     copies: Copies,
     /// The models that this one may attach.
     attachable: BTreeMap<String, Rc<Part>>,
@@ -108,7 +112,7 @@ struct Mjcf<'d> {
 /// [`Error::File`] with line and column for broken XML, a number that is not one, a name that is
 /// missing or unknown, an include that cannot be read, and everything that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
-    let nesting = Nesting { depth: 0, models: &Cell::new(0) };
+    let nesting = Nesting { depth: 0, models: &Cell::new(0), together: &Together::default() };
     with_model(text, path, nesting, |model, name| model.write(name))
 }
 
@@ -125,8 +129,10 @@ fn with_model<T>(text: &str, path: &Path, nesting: Nesting<'_>, finish: Finish<T
             format!("the root element is <{}>, MJCF begins with <mujoco>", root.tag_name().name());
         return Err(source.error(Reader::tag(root), message, ""));
     }
-    let included =
-        inclusion::gather(&source, |s, node, before| files::find(path, s, node, before))?;
+    let find = |s: &Source<'_>, node: Node<'_, '_>, before: &[Included]| {
+        files::find(path, s, node, before)
+    };
+    let included = inclusion::gather(&source, nesting.together, find)?;
     let sources: Vec<Source<'_>> = included.iter().map(|f| f.source(FORMAT)).collect();
     let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
     let files = Files { main: &main, included: ByInclude::new(&main, &included, &documents) };
@@ -177,13 +183,15 @@ fn read<'d>(
         sites: Vec::new(),
         starts: Vec::new(),
         sums: BTreeMap::new(),
-        tied: Vec::new(),
+        tied: BTreeSet::new(),
         world: BTreeMap::new(),
-        link_names: BTreeSet::new(),
-        joint_names: BTreeSet::new(),
+        link_names: Names::default(),
+        joint_names: Names::default(),
+        geom_names: Names::default(),
         given_bodies: BTreeSet::new(),
         given_joints: BTreeSet::new(),
-        joint_index: BTreeMap::new(),
+        couplings: Couplings::default(),
+        made_links: 0,
         copies: Copies::default(),
         attachable: BTreeMap::new(),
         has_attached_actuators: false,
@@ -192,9 +200,9 @@ fn read<'d>(
     it.assets()?;
     it.parts(nesting)?;
     it.bodies()?;
+    it.couplings = Couplings::of(&it);
     it.excluded_contacts()?;
     it.set_total_mass();
-    it.joint_index = it.joints.iter().enumerate().map(|(i, j)| (j.name.clone(), i)).collect();
     it.equalities()?;
     it.tendons();
     it.actuators()?;
@@ -211,7 +219,7 @@ impl Mjcf<'_> {
         }
         for tendon in self.files.section("tendon") {
             let name = tendon.attribute("name").unwrap_or("");
-            if !self.tied.iter().any(|t| t == name) {
+            if !self.tied.contains(name) {
                 let what = format!("<{}> in <tendon>", tendon.tag_name().name());
                 self.reader.note(tendon, what, why_unused("tendon"), name);
             }
@@ -233,7 +241,7 @@ impl Mjcf<'_> {
                 self.copies.current = copy;
                 let [a, b] = ["body1", "body2"].map(|body| self.reader.required(node, body));
                 let [a, b] = [a?, b?].map(|body| self.copies.name(Kind::Body, body.trim()));
-                if [&a, &b].iter().all(|body| self.link_names.contains(*body)) {
+                if [&a, &b].iter().all(|body| self.link_names.contains(body)) {
                     self.disabled_collisions.push([a, b]);
                 } else {
                     self.reader.note(node, "<exclude>", "it names no bodies of this model", name);
@@ -264,9 +272,8 @@ impl Mjcf<'_> {
         }
         // MJCF has separate namespaces for sites and bodies; frames share one here.
         for (name, link, pose) in self.sites {
-            let free = self.link_names.insert(name.clone());
-            let name =
-                if free { name } else { unique(&mut self.link_names, &format!("site:{name}")) };
+            let is_free = self.link_names.insert(&name);
+            let name = if is_free { name } else { self.link_names.unique(&format!("site:{name}")) };
             builder.frame(&name, &link, pose);
         }
         for (joint, q) in self.starts {
@@ -279,7 +286,7 @@ impl Mjcf<'_> {
         builder.build().map_err(|error| {
             let Error::Model { culprit, message, .. } = error else { return error };
             let root = self.files.main.root_element();
-            let named = |n: &roxmltree::Node<'_, '_>| {
+            let named = |n: &Node<'_, '_>| {
                 !culprit.is_empty() && n.attribute("name") == Some(culprit.as_str())
             };
             match root.descendants().find(named) {

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 use crate::error::shown;
+use crate::model::formats::inclusion::Together;
 use crate::model::{JointSpec, Link, LoadReport, LoopJointSpec, Mimic};
 use crate::spatial::Pose;
 
@@ -18,6 +19,7 @@ pub(super) struct Nesting<'a> {
     pub(super) depth: usize,
     /// Models read so far.
     pub(super) models: &'a Cell<usize>,
+    pub(super) together: &'a Together,
 }
 
 /// Another model, as it was read.
@@ -28,7 +30,8 @@ pub(super) struct Part {
     pub(super) sums: BTreeMap<String, Vec<Mimic>>,
     pub(super) disabled_collisions: Vec<[String; 2]>,
     pub(super) sites: Vec<(String, String, Pose)>,
-    pub(super) starts: Vec<(String, Vec<f64>)>,
+    /// Home positions of joints, later ones take precedence.
+    pub(super) starts: BTreeMap<String, Vec<Vec<f64>>>,
     pub(super) world: BTreeMap<String, Pose>,
     pub(super) first_joint: BTreeMap<String, usize>,
     pub(super) path: PathBuf,

@@ -10,7 +10,6 @@
 //! Source   mujoco.readthedocs.io, XML reference, replicate
 //! Checked  tests/formats/mjcf_copies.rs::copies_*
 
-use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use roxmltree::Node;
@@ -19,6 +18,7 @@ use super::Mjcf;
 use super::attributes::used;
 use super::copies::{Kind, Placed};
 use super::defaults::Element;
+use super::unique_name::Names;
 use crate::error::Result;
 use crate::spatial::{Pose, Vec3};
 
@@ -79,9 +79,11 @@ impl<'d> Mjcf<'d> {
         let taken = match kind {
             Kind::Body => &mut self.link_names,
             Kind::Joint => &mut self.joint_names,
-            Kind::Site => &mut BTreeSet::new(),
+            Kind::Site => &mut Names::default(),
         };
-        taken.extend(suffixes.iter().map(|suffix| format!("{name}{suffix}")));
+        for suffix in suffixes.iter() {
+            taken.insert(&format!("{name}{suffix}"));
+        }
         if suffixes.iter().all(|s| !s.is_empty()) {
             self.copies.suffixes.insert((kind, name.to_owned()), Rc::clone(suffixes));
         }
@@ -136,7 +138,7 @@ impl<'d> Mjcf<'d> {
     /// The suffixes of the copies of a constraint, an actuator or an excluded contact; none with a
     /// note if it ties a copy to what is not copied with it.
     pub(super) fn copies_of(&mut self, node: Node<'d, 'd>) -> Vec<Rc<str>> {
-        let by_tendon = node.attribute("tendon1").and_then(|t| self.tendon(t.trim()));
+        let by_tendon = node.attribute("tendon1").and_then(|t| self.couplings.tendon(t.trim()));
         let strict =
             by_tendon.is_none() && matches!(node.tag_name().name(), "connect" | "weld" | "joint");
         let mut names = Vec::new();
@@ -160,9 +162,5 @@ impl<'d> Mjcf<'d> {
             return Vec::new();
         };
         copies
-    }
-
-    fn tendon(&self, name: &str) -> Option<Node<'d, 'd>> {
-        self.files.section("tendon").into_iter().find(|t| t.attribute("name") == Some(name))
     }
 }

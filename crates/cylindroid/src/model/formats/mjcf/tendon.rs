@@ -10,11 +10,12 @@
 //! Source   mujoco.readthedocs.io, XML reference, equality/tendon, tendon/fixed
 //! Checked  tests/formats/mujoco.rs::tendons_*, ::couplings_*
 
+use std::collections::BTreeMap;
+
 use roxmltree::Node;
 
 use super::Mjcf;
 use super::defaults::Element;
-use super::unique_name::unique;
 use crate::error::{Error, Result};
 use crate::model::{JointKind, JointSpec, Mimic};
 use crate::spatial::Pose;
@@ -68,6 +69,7 @@ impl<'d> Mjcf<'d> {
                 why
             }
         };
+        self.reader.check_links(node, self.links.len() + self.made_links)?;
         if let Some(why) = why {
             self.reader.note(node, "<tendon> in <equality>", why, name);
         }
@@ -81,15 +83,13 @@ impl<'d> Mjcf<'d> {
         attribute: &str,
     ) -> Result<Option<(Vec<String>, Terms)>> {
         let name = self.reader.required(node, attribute)?.trim();
-        let tendons = self.files.section("tendon");
-        let Some(tendon) = tendons.iter().find(|t| t.attribute("name") == Some(name)) else {
-            let known = tendons.iter().filter_map(|t| t.attribute("name"));
-            let unknown = Error::unknown("tendon", name, known);
+        let Some(tendon) = self.couplings.tendon(name) else {
+            let unknown = Error::unknown("tendon", name, self.couplings.tendon_names());
             return Err(self.reader.refuse(node, attribute, unknown.to_string()));
         };
-        self.reader.unread_attributes(*tendon, &["name"]);
+        self.reader.unread_attributes(tendon, &["name"]);
         let mut terms = Vec::new();
-        for joint in self.files.children(*tendon).into_iter().filter(|n| n.has_tag_name("joint")) {
+        for joint in self.files.children(tendon).into_iter().filter(|n| n.has_tag_name("joint")) {
             self.reader.unread_attributes(joint, &["joint", "coef"]);
             let coefficient = Element::bare(joint).number(&self.reader, "coef")?.unwrap_or(0.0);
             terms.push((self.joint_named(joint, "joint")?, coefficient));
@@ -115,11 +115,12 @@ impl<'d> Mjcf<'d> {
         if others.iter().any(|(j, _)| self.sums.contains_key(&self.joints[*j].name)) {
             return Some("it would follow a joint that follows several");
         }
-        let mut offset = self.reference(follower) + constant / own;
+        let mut offset = self.couplings.reference(follower) + constant / own;
+        let leaders: Vec<usize> = others.iter().map(|(joint, _)| *joint).collect();
         let mut mimics = Vec::new();
         for (joint, a) in others {
             let multiplier = -a / own;
-            offset -= multiplier * self.reference(joint);
+            offset -= multiplier * self.couplings.reference(joint);
             let joint = self.joints[joint].name.clone();
             mimics.push(Mimic { joint, multiplier, offset: 0.0 });
         }
@@ -128,6 +129,8 @@ impl<'d> Mjcf<'d> {
             return Some("its coefficients are out of range");
         }
         mimics[0].offset = offset;
+        self.couplings.follow(follower, &leaders);
+        self.made_links += leaders.len() - 1;
         let joint = &mut self.joints[follower];
         let left_out = [("range", is_limited(joint)), ("armature", joint.armature != 0.0)];
         (joint.limits.lower, joint.limits.upper) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -149,22 +152,16 @@ impl<'d> Mjcf<'d> {
     /// The place of the joint that follows the others: without a motor, armature and limits, and the
     /// last, in this order.
     fn follower(&self, terms: &[(usize, f64)]) -> Option<usize> {
-        let leads = |name: &str| {
-            let first = self.joints.iter().filter_map(|j| j.mimic.as_ref());
-            first.chain(self.sums.values().flatten()).any(|mimic| mimic.joint == name)
-        };
-        let motors = self.files.section("actuator");
-        let has_motor = |name: &str| {
-            let joint = |n: &Node<'_, '_>| n.attribute("joint").map(str::trim) == Some(name);
-            motors.iter().any(joint)
-        };
-        let free = terms.iter().enumerate().filter(|(_, (j, _))| {
-            let joint = &self.joints[*j];
-            joint.mimic.is_none() && !leads(&joint.name)
-        });
+        let is_free = |j: usize| self.joints[j].mimic.is_none() && !self.couplings.is_followed(j);
+        let free = terms.iter().enumerate().filter(|(_, (j, _))| is_free(*j));
         let rank = |&(place, &(j, _)): &(usize, &(usize, f64))| {
             let joint = &self.joints[j];
-            (!has_motor(&joint.name), joint.armature == 0.0, !is_limited(joint), place)
+            (
+                !self.couplings.has_motor(&joint.name),
+                joint.armature == 0.0,
+                !is_limited(joint),
+                place,
+            )
         };
         free.max_by_key(rank).map(|(place, _)| place)
     }
@@ -175,14 +172,14 @@ impl<'d> Mjcf<'d> {
         self.disabled_collisions.push([joint.parent.clone(), joint.child.clone()]);
         let mut parts = vec![joint.clone()];
         for mimic in others {
-            let between = unique(&mut self.link_names, &format!("{}.{}", joint.child, joint.name));
+            let between = self.link_names.unique(&format!("{}.{}", joint.child, joint.name));
             let name = format!("{}+{}", joint.name, mimic.joint);
             if let Some(last) = parts.last_mut() {
                 last.child.clone_from(&between);
                 last.joint_from_child = Pose::IDENTITY;
             }
             parts.push(JointSpec {
-                name: unique(&mut self.joint_names, &name),
+                name: self.joint_names.unique(&name),
                 parent: between,
                 parent_from_joint: Pose::IDENTITY,
                 mimic: Some(mimic),
@@ -200,10 +197,14 @@ fn is_limited(joint: &JointSpec) -> bool {
 /// Every joint once, without those whose coefficients are or cancel to zero.
 fn merged(terms: Terms) -> Terms {
     let mut all: Terms = Vec::new();
+    let mut places: BTreeMap<usize, usize> = BTreeMap::new();
     for (joint, a) in terms {
-        match all.iter_mut().find(|(other, _)| *other == joint) {
-            Some((_, sum)) => *sum += a,
-            None => all.push((joint, a)),
+        match places.get(&joint) {
+            Some(&place) => all[place].1 += a,
+            None => {
+                places.insert(joint, all.len());
+                all.push((joint, a));
+            }
         }
     }
     all.retain(|(_, a)| *a != 0.0);

@@ -28,7 +28,7 @@ use roxmltree::{Document, Node};
 use self::frames::{Frames, MODEL, PosedFrame};
 use self::includes::FORMAT;
 use self::joint_entry::JointEntry;
-use super::inclusion::{self, ByInclude};
+use super::inclusion::{self, ByInclude, Together};
 use super::mesh::Packages;
 use super::span::Source;
 use super::xml::{self, Reader};
@@ -83,7 +83,9 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
             format!("the root element is <{}>, SDF begins with <sdf>", root.tag_name().name());
         return Err(source.error(tag, message, ""));
     }
-    let included = inclusion::gather(&source, |source, node, _| Ok(includes::find(source, node)))?;
+    let together = Together::default();
+    let included =
+        inclusion::gather(&source, &together, |source, node, _| Ok(includes::find(source, node)))?;
     let sources: Vec<Source<'_>> = included.iter().map(|f| f.source(FORMAT)).collect();
     let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
     read(source, sources.clone(), root, ByInclude::new(&document, &included, &documents))
@@ -122,6 +124,7 @@ fn read<'d>(
         let name = other.name(&reader).unwrap_or("").to_owned();
         let why = "one model of a file is read: the first with a joint, otherwise the first";
         reader.note(other.by, "further <model>", why, &name);
+        pass_over(&mut reader, &includes, *other);
     }
     if let Some(world) = chosen.by.parent_element().filter(|p| p.has_tag_name("world")) {
         reader.unread_attributes(world, &["name"]);
@@ -136,6 +139,18 @@ fn read<'d>(
     };
     it.read(chosen)?;
     it.write(chosen)
+}
+
+/// Accounts for the models that another one includes: they lie in files of their own.
+fn pass_over<'d>(reader: &mut Reader<'_>, includes: &ByInclude<'d>, other: Placed<'d>) {
+    let mut stack = vec![other.by];
+    while let Some(node) = stack.pop() {
+        if let Some(model) = included_model(includes, node) {
+            reader.pass_over(model);
+            stack.push(model);
+        }
+        stack.extend(node.children().filter(Node::is_element));
+    }
 }
 
 /// The model that an `<include>` brings.
@@ -216,6 +231,7 @@ impl<'d> Sdf<'d> {
             for node in model.children().filter(Node::is_element) {
                 match node.tag_name().name() {
                     "link" => {
+                        self.reader.check_links(node, self.links.len() + 1)?;
                         let name = self.place(node, &scope, None)?;
                         first_link.get_or_insert_with(|| name.clone());
                         let link = self.reader.sdf_link(node, &name, &packages)?;

@@ -16,6 +16,7 @@ use super::tree::{self, JointEntry};
 use super::value::Table;
 use super::world::World;
 use crate::error::{Error, Result};
+use crate::model::formats::xml_limits::MOST_LINKS;
 use crate::model::{Dimension, Inclusion, Mechanism, ParameterValues};
 use crate::spatial::Pose;
 
@@ -86,6 +87,13 @@ pub(super) fn include<'t>(
 }
 
 fn add(table: &Table<'_>, name: &str, world: &mut World<'_>, robot: Mechanism) -> Result<()> {
+    if world.builder.links.len() + robot.links().len() > MOST_LINKS {
+        let message = format!(
+            "with '{}' the mechanism has more than {MOST_LINKS} links, the limit of this reader",
+            robot.name()
+        );
+        return Err(table.refuse("model", message, "bring in fewer or smaller robots"));
+    }
     if world.dimension == Dimension::Planar && robot.dimension() == Dimension::Spatial {
         let message = format!("'{}' moves in space, this file in the plane", robot.name());
         return Err(table.refuse("model", message, "leave out dimension = 2"));

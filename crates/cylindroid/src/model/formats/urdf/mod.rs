@@ -100,8 +100,11 @@ fn read_robot(reader: &mut Reader<'_>, robot: Node<'_, '_>) -> Result<Mechanism>
     let packages = Packages::of(path);
     let elements: Vec<_> = robot.children().filter(Node::is_element).collect();
     let mut links = BTreeSet::new();
+    let mut count = 0;
     for node in &elements {
         if reader.is(*node, "link") {
+            count += 1;
+            reader.check_links(*node, count)?;
             builder.link(reader.link(*node, &materials, &packages)?);
             links.extend(node.attribute("name"));
         }
