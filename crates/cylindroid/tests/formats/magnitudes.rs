@@ -69,7 +69,8 @@ fn mechanisms_without_a_size_are_refused() {
     let toml = "name = 'r'\n[[joint]]\nname = 'j'\ntype = 'revolute'\nbetween = ['ground', 'b']\n\
                 origin = [#, 0, 0]\naxis = [0, 0, 1]\n@";
     let of_toml = "[[frame]]\nname = 'f'\nlink = 'b'\nxyz = [0, 0, 0.1]\n";
-    let all: [(&str, &str, fn(&str) -> Result<Mechanism>); 4] = [
+    type Reader = fn(&str) -> Result<Mechanism>;
+    let all: [(&str, &str, Reader); 4] = [
         (urdf, of_urdf, read_urdf),
         (sdf, of_sdf, read_sdf),
         (mjcf, of_mjcf, read_mjcf),

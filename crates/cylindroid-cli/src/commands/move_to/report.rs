@@ -1,11 +1,10 @@
 //! What `move` prints: the table and the JSON object.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::Write;
 
-use cylindroid::Mechanism;
 use cylindroid::closure::LoopClosureError;
-use cylindroid::control::{LimitKind, MotionResult, Task};
+use cylindroid::control::{MotionResult, Task};
 use serde::Serialize;
 
 use super::job::{Goal, Job};
@@ -291,7 +290,7 @@ fn print(out: &mut dyn Write, job: &Job, result: &Result) -> anyhow::Result<()> 
             ),
             ("inverse", inverse(job, outcome)),
             ("secondary", secondary(job)),
-            ("limits met", limits_met(&job.robot, &outcome.limits_hit)),
+            ("limits met", sentences::limits_met(&job.robot, &outcome.limits_hit)),
             ("final q [rad or m]", output::entries(&outcome.q)),
         ],
     )?;
@@ -329,17 +328,4 @@ fn secondary(job: &Job) -> String {
     }
     let names: Vec<&str> = job.options.secondary.iter().map(|s| s.name()).collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-}
-
-/// `joint (kind, kind), ...`
-pub(super) fn limits_met(robot: &Mechanism, hit: &BTreeSet<(usize, LimitKind)>) -> String {
-    let mut parts: Vec<String> = Vec::new();
-    for (i, coordinate) in robot.coordinates().iter().enumerate() {
-        let kinds: Vec<&str> =
-            hit.iter().filter(|(c, _)| *c == i).map(|(_, kind)| kind.name()).collect();
-        if !kinds.is_empty() {
-            parts.push(format!("{} ({})", coordinate.name, kinds.join(", ")));
-        }
-    }
-    if parts.is_empty() { "none".to_owned() } else { parts.join(", ") }
 }

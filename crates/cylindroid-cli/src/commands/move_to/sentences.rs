@@ -1,11 +1,12 @@
 //! The end of a motion in full sentences: the cause, with names and values, and the remedy.
 
+use std::collections::BTreeSet;
+
 use cylindroid::ReferenceFrame;
-use cylindroid::control::{MotionResult, Plant, Stall, Task};
+use cylindroid::control::{LimitKind, MotionResult, Plant, Stall, Task};
 use cylindroid::model::Mechanism;
 
 use super::job::{Goal, Job};
-use super::report::limits_met;
 use crate::output::number;
 
 /// The cause as one word: "reached", a [`Stall::name`], "slowed" of a twist, or "time-limit".
@@ -239,4 +240,17 @@ fn along(task: Task, direction: &[f64]) -> String {
         .collect();
     let axes = if task.axes == ReferenceFrame::Local { "tool" } else { "world" };
     format!("{}, {axes} axes", parts.join(", "))
+}
+
+/// `joint (kind, kind), ...`
+pub(super) fn limits_met(robot: &Mechanism, hit: &BTreeSet<(usize, LimitKind)>) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    for (i, coordinate) in robot.coordinates().iter().enumerate() {
+        let kinds: Vec<&str> =
+            hit.iter().filter(|(c, _)| *c == i).map(|(_, kind)| kind.name()).collect();
+        if !kinds.is_empty() {
+            parts.push(format!("{} ({})", coordinate.name, kinds.join(", ")));
+        }
+    }
+    if parts.is_empty() { "none".to_owned() } else { parts.join(", ") }
 }

@@ -64,7 +64,7 @@ impl Columns {
     /// Those of rows of so many numbers without a header: a time if there is one, a position, a
     /// quaternion if there is one.
     pub(super) fn of_count(count: usize) -> Option<Self> {
-        let (time, first) = if count % 4 == 0 { (Some(0), 1) } else { (None, 0) };
+        let (time, first) = if count.is_multiple_of(4) { (Some(0), 1) } else { (None, 0) };
         let orientation = match count {
             3 | 4 => Orientation::Kept,
             7 | 8 => Orientation::Quaternion([3, 4, 5, 6].map(|i| first + i)),

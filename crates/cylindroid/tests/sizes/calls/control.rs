@@ -49,6 +49,7 @@ calls! {
     control::LimitKind::name;
     control::MotionTask::at_level;
     control::MotionTask::new;
+    control::MotionResult::is_slowed;
     control::NamedInverse::all = || NamedInverse::all().collect::<Vec<_>>();
     control::NamedInverse::named;
     control::OperatorAuthority::get;

@@ -246,7 +246,7 @@ impl<'a> Report<'a> {
                 ("steps", result.steps.to_string()),
                 ("time [s]", output::number(result.time)),
                 ("nearest bodies", nearest),
-                ("limits met", super::super::report::limits_met(&job.robot, &result.limits_hit)),
+                ("limits met", super::super::sentences::limits_met(&job.robot, &result.limits_hit)),
                 ("final q [rad or m]", output::entries(&result.q)),
             ],
         )?;

@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::Node;
 
-use super::Mjcf;
 use crate::model::formats::graph::Groups;
+use crate::model::{JointSpec, Mimic};
 
 /// The couplings of the joints read so far, by their indices.
 pub(super) struct Couplings<'d> {
@@ -27,8 +27,14 @@ pub(super) struct Couplings<'d> {
 }
 
 impl<'d> Couplings<'d> {
-    pub(super) fn of(model: &Mjcf<'d>) -> Self {
-        let joints = &model.joints;
+    /// Of joints with their positions at qpos0 by name, and what else those follow that follow several;
+    /// of the elements of `<tendon>` and `<actuator>`.
+    pub(super) fn of(
+        joints: &[JointSpec],
+        starts: &[(String, Vec<f64>)],
+        sums: &BTreeMap<String, Vec<Mimic>>,
+        [tendons, motors]: [Vec<Node<'d, 'd>>; 2],
+    ) -> Self {
         let names = joints.iter().enumerate().map(|(i, j)| (j.name.clone(), i));
         let mut it = Self {
             index: names.collect(),
@@ -39,18 +45,17 @@ impl<'d> Couplings<'d> {
             motors: BTreeSet::new(),
         };
         // The first value of several is that at qpos0, and the first tendon of several counts.
-        for (name, q) in model.starts.iter().rev() {
+        for (name, q) in starts.iter().rev() {
             if let Some(&i) = it.index.get(name) {
                 it.references[i] = q.first().copied().unwrap_or(0.0);
             }
         }
-        for tendon in model.files.section("tendon").into_iter().rev() {
+        for tendon in tendons.into_iter().rev() {
             it.tendons.extend(tendon.attribute("name").map(|name| (name, tendon)));
         }
-        let motors = model.files.section("actuator");
         it.motors = motors.iter().filter_map(|n| n.attribute("joint")).map(str::trim).collect();
         for (i, joint) in joints.iter().enumerate() {
-            let others = model.sums.get(&joint.name).into_iter().flatten();
+            let others = sums.get(&joint.name).into_iter().flatten();
             for (k, mimic) in joint.mimic.iter().chain(others).enumerate() {
                 if let Some(&leader) = it.index.get(&mimic.joint) {
                     it.followed[leader] = true;

@@ -200,7 +200,8 @@ fn read<'d>(
     it.assets()?;
     it.parts(nesting)?;
     it.bodies()?;
-    it.couplings = Couplings::of(&it);
+    let sections = ["tendon", "actuator"].map(|name| it.files.section(name));
+    it.couplings = Couplings::of(&it.joints, &it.starts, &it.sums, sections);
     it.excluded_contacts()?;
     it.set_total_mass();
     it.equalities()?;
