@@ -253,7 +253,7 @@ def test_files_of_csv(tmp_path):
     with pytest.raises(cy.UnreadableFileError, match="its columns have no names"):
         cy.sweep(robot, configurations=path)
     path.write_text(",".join(robot.joint_names) + "\n0,0,a,0,0\n")
-    with pytest.raises(cy.UnreadableFileError, match="line 2 is not all numbers"):
+    with pytest.raises(cy.UnreadableFileError, match="line 2, column 3: 'a' is not a number"):
         cy.sweep(robot, configurations=path)
     with pytest.raises(cy.MissingFileError):
         cy.sweep(robot, configurations=tmp_path / "none.csv")
