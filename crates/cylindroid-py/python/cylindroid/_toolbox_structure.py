@@ -65,7 +65,7 @@ class Structure:
         and `Mechanism.lower` do not know; a length without limits is infinite, where there it raises.
         """
         limits = np.stack([self.mechanism.lower, self.mechanism.upper])
-        free = np.isinf(limits).all(axis=0) & self.revolutejoints
+        free = np.isinf(limits).all(axis=0) & np.array(self.revolutejoints)
         limits[:, free] = [[-np.pi], [np.pi]]
         return limits
 
