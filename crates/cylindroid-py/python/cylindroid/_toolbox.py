@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
@@ -140,12 +140,8 @@ def reading_of(robot: Any) -> Reading:
         )
     motors = [name for name, link in zip(names, links) if _is_driven(link)]
     text = joints.urdf(str(robot.name), limits=False)
-    return Reading(mechanism, frame, names, motors, frames, partial(_parsed, text))
-
-
-@lru_cache(maxsize=8)
-def _parsed(urdf: str) -> Mechanism:
-    return parse(urdf, "urdf")
+    unbounded = partial(parse, text, "urdf")
+    return Reading(mechanism, frame, names, motors, frames, unbounded)
 
 
 def _number(link: Any) -> int:
