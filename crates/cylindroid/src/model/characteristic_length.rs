@@ -5,8 +5,8 @@
 //!          centre c minimises the sum of their squared distances, `sum (1 - d d^T) (c - p) = 0`
 //!          (d = 0 for points); L = 2 max distance from c
 //! Units    m
-//! Valid    any mechanism; lengths below MIN_LENGTH are roundings and count as zero. Where all features meet in a point (a spherical wrist) or there is none
-//!          (slides alone), the origins of the joint frames replace them, then the longest travel
+//! Valid    any mechanism; lengths below MIN_LENGTH are roundings and count as zero. Where all features
+//!          meet in a point (a spherical wrist) or there is none (slides alone), the origins of the joint frames replace them, then the longest travel
 //!          of a slide, then 1 m: no length of the mechanism enters its equations then
 //! Fails    if a length is not zero, and none is as long as MIN_LENGTH
 //! Why so   distances between lines and points are those of the mechanism, whatever the origin and
