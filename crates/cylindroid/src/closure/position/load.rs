@@ -150,8 +150,8 @@ fn refuse(mechanism: &Mechanism, first: &Assembly, searched: &str) -> Result<Err
     let links = mechanism.links();
     let message = format!(
         "closure '{}' cannot be closed: its frames on '{}' and '{}' remain {open} apart, in the \
-         best configuration found from {searched}; check the frames, give a start nearer to an assembly (home, or start of a [[robot]]), or widen \
-         the limits",
+         best configuration found from {searched}; check the frames, give a start nearer to an \
+         assembly (home, or start of a [[robot]]), or widen the limits",
         joint.name, links[joint.a].name, links[joint.b].name
     );
     Ok(Error::Model { model: mechanism.name().to_owned(), culprit: joint.name.clone(), message })

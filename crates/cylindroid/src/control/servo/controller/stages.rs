@@ -146,10 +146,6 @@ impl Servo {
         };
         let problem =
             Problem { j: &self.task, bounds: &self.bounds, last: &self.last, gain, error };
-        let path = if self.edge_aim.is_some() { Path::Curved } else { Path::Straight };
-        let patience = self.stall_detector.patience();
-        let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
-        let gain_of_way = gain_of_way.map(|gain| patience * gain);
         if brakes {
             let coupling = self.coupled.as_mut().map(|coupled| {
                 coupled.load_last(&self.rates, &self.space);
@@ -157,6 +153,10 @@ impl Servo {
             });
             return Ok(self.saturator.brake(&problem, coupling, &mut self.primary));
         }
+        let path = if self.edge_aim.is_some() { Path::Curved } else { Path::Straight };
+        let patience = self.stall_detector.patience();
+        let gain_of_way = self.edge_aim.and_then(|aim| aim.gain_of_way(self.options.dt));
+        let gain_of_way = gain_of_way.map(|gain| patience * gain);
         let Some(coupled) = &mut self.coupled else {
             // Arms without self-motions do not swing, and come back to targets less often from this way.
             let nearest = self.nearest_pose.as_ref().filter(|_| self.edge_aim.is_some());
