@@ -44,8 +44,8 @@ pub struct cyl_servo_options {
     pub speed_linear: f64,
     /// Largest angular speed [rad/s]; infinite for none.
     pub speed_angular: f64,
-    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; infinite for
-    /// none.
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; 0 for the default
+    /// ramp (20 rad/s^2, or lengths of the mechanism/s^2), infinite for none.
     pub acceleration: f64,
     /// Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3]; infinite for none.
     pub jerk: f64,
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn cyl_servo_defaults(
             tolerance_orientation: usual.tolerance.orientation,
             speed_linear: usual.speed.linear,
             speed_angular: usual.speed.angular,
-            acceleration: usual.acceleration,
+            acceleration: usual.acceleration.unwrap_or(0.0),
             jerk: usual.jerk,
             delay: usual.plant.delay,
             time_constant: usual.plant.time_constant,
@@ -178,7 +178,8 @@ pub unsafe extern "C" fn cyl_servo_new(
                 orientation: o.tolerance_orientation,
             };
             chosen.speed = SpeedLimit { linear: o.speed_linear, angular: o.speed_angular };
-            (chosen.acceleration, chosen.jerk) = (o.acceleration, o.jerk);
+            chosen.acceleration = (o.acceleration != 0.0).then_some(o.acceleration);
+            chosen.jerk = o.jerk;
             chosen.plant.delay = o.delay;
             chosen.plant.time_constant = o.time_constant;
             chosen.plant.noise = o.noise;

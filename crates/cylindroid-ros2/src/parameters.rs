@@ -88,7 +88,8 @@ pub struct Parameters {
     /// Largest angular speed of the tool [rad/s] [default: none]
     #[arg(long, value_name = "RAD/S", help_heading = "Control")]
     pub angular_speed: Option<f64>,
-    /// Acceleration limit of joints without one in the model [rad/s^2 or m/s^2] [default: 20]
+    /// Acceleration limit of joints without one in the model [rad/s^2 or m/s^2] [default: 20 rad/s^2,
+    /// or lengths of the robot/s^2]
     #[arg(long, value_name = "A", help_heading = "Control")]
     pub acceleration: Option<f64>,
     /// Jerk limit of joints without one in the model [rad/s^3 or m/s^3] [default: none]

@@ -16,7 +16,7 @@ pub(crate) fn servo_options(config: &Config, robot: &Mechanism) -> Result<ServoO
     options.dt = 1.0 / config.rate;
     options.gain = ServoGains { position: config.gain, orientation: config.gain };
     options.speed = SpeedLimit { linear: config.linear_speed, angular: config.angular_speed };
-    options.acceleration = config.acceleration.unwrap_or(options.acceleration);
+    options.acceleration = config.acceleration;
     options.jerk = config.jerk;
     let (delay, time_constant, noise) = (config.delay, config.time_constant, config.noise);
     options.plant = Plant { delay, time_constant, noise };

@@ -66,9 +66,9 @@ pub const POSITION: f64 = 1e-6;
 /// Default orientation tolerance of a Cartesian move (rad).
 pub const ORIENTATION: f64 = 1e-6;
 
-/// Default ramp: acceleration limit of the joints of a servo that have none in the model, of trees
-/// [rad/s^2 or m/s^2], so that the first step from rest commands no jump. Published limits of arms are
-/// 5 to 20 rad/s^2.
+/// Default ramp: acceleration limit of the joints of a servo that have none in the model [rad/s^2, or
+/// lengths of the mechanism/s^2], so that the first step from rest commands no jump. Published limits
+/// of arms are 5 to 20 rad/s^2.
 pub const DEFAULT_RAMP: f64 = 20.0;
 
 /// Fraction of 1 plus the sizes of position and limit that is kept free at a position limit,

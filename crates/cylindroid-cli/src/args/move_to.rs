@@ -255,7 +255,8 @@ pub(crate) struct ServoArgs {
     pub(crate) speed: Option<Pair>,
 
     /// Acceleration limit of joints that have none in the model [rad/s^2 or m/s^2]; inf for none
-    /// [default: 20, the default ramp; none for closed chains and with several tasks]
+    /// [default: 20 rad/s^2, or lengths of the mechanism/s^2, the default ramp; none with
+    /// several tasks]
     #[arg(long, value_name = "A", allow_hyphen_values = true)]
     pub(crate) acceleration: Option<f64>,
 

@@ -245,11 +245,13 @@ pub(crate) fn describe(robot: &Mechanism) -> InfoJson<'_> {
 
 /// The acceleration limit that a servo takes in place of those of the model.
 fn default_ramp(robot: &Mechanism) -> String {
-    if robot.is_closed() {
-        return "--limits and --acceleration give them".to_owned();
-    }
     let ramp = cylindroid::tolerance::DEFAULT_RAMP;
-    format!("default ramp of {ramp} rad/s^2 or m/s^2 (--limits, --acceleration)")
+    let slides = robot.coordinates().iter().any(|c| c.kind.is_length());
+    let of_slides = match slides {
+        true => format!(", {} m/s^2 of slides", output::number(ramp * robot.reach())),
+        false => String::new(),
+    };
+    format!("default ramp of {ramp} rad/s^2{of_slides} (--limits, --acceleration)")
 }
 
 fn print(out: &mut dyn Write, robot: &Mechanism, info: &InfoJson<'_>) -> anyhow::Result<()> {

@@ -84,7 +84,7 @@ impl Avoidance {
         let own = TaskServoOptions {
             dt: options.dt,
             length: options.length,
-            acceleration: options.acceleration,
+            acceleration: options.acceleration.unwrap_or(f64::INFINITY),
             jerk: options.jerk,
             collisions: Some(CollisionAvoidance { model, gap, margin }),
             ..TaskServoOptions::new(mechanism)

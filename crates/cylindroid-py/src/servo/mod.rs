@@ -50,8 +50,8 @@ pub(crate) use trajectory::PyTrajectory;
 /// speed : float or (float, float), optional
 ///     Speed limits of the tool [m/s, rad/s]. Default: those of the joints.
 /// acceleration : float, optional
-///     Limit of joints that have none in the model [rad/s^2 or m/s^2]; `inf` for none. Default: 20, the
-///     default ramp; none for closed chains and with `tasks`.
+///     Limit of joints that have none in the model [rad/s^2 or m/s^2]; `inf` for none. Default: the
+///     default ramp, 20 rad/s^2 or characteristic lengths of the mechanism/s^2; none with `tasks`.
 /// jerk : float, optional
 ///     Limit of joints that have none in the model [rad/s^3 or m/s^3]. Default: none.
 /// delay, time_constant, noise : float, optional
@@ -320,7 +320,7 @@ impl PyServo {
         set(&mut options.dt, dt);
         set(&mut options.tolerance.position, tolerance_position);
         set(&mut options.tolerance.orientation, tolerance_orientation);
-        set(&mut options.acceleration, acceleration);
+        options.acceleration = acceleration;
         set(&mut options.jerk, jerk);
         set(&mut options.command_timeout, command_timeout);
         set(&mut options.length, length);

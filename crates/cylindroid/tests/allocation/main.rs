@@ -170,7 +170,7 @@ fn robots_that_lag_allocate_nothing() {
     assert_eq!(counted, 0);
 
     let five_bar = catalogue::load("five-bar").unwrap();
-    let options = ServoOptions { plant, acceleration: 5.0, ..ServoOptions::new(&five_bar) };
+    let options = ServoOptions { plant, acceleration: Some(5.0), ..ServoOptions::new(&five_bar) };
     let mut servo = Servo::new(&five_bar, options).unwrap();
     let q = assemble(&five_bar, five_bar.home(), &[]).unwrap().q;
     servo.start_from(&q).unwrap();
@@ -204,7 +204,7 @@ fn closed_chains_allocate_nothing() {
             let options = ServoOptions {
                 task: Task::POSITION,
                 gain: ServoGains { position: 100.0, orientation: 100.0 },
-                acceleration: 5.0,
+                acceleration: Some(5.0),
                 secondary,
                 ..ServoOptions::new(&mechanism)
             };

@@ -14,7 +14,7 @@ fn options(robot: &Mechanism, random: &mut Random<'_>) -> ServoOptions {
     options.dt = random.power(-4.0, -1.3);
     let gain = random.power(-1.0, 0.28) / options.dt;
     options.gain = ServoGains { position: gain, orientation: gain };
-    options.acceleration = random.power(-1.0, 4.0);
+    options.acceleration = Some(random.power(-1.0, 4.0));
     options.method = Method::ALL[random.below(Method::ALL.len())];
     let closed = robot.is_closed();
     if !closed && random.once_in(2) {
@@ -78,7 +78,7 @@ fn steps<'b>(
     random: &mut Random<'b>,
     mut step: impl FnMut(&mut Servo, &[f64], &mut Random<'b>) -> Result<(), Error>,
 ) -> Tally {
-    let mut watch = Watch::new(robot, options.dt, options.acceleration);
+    let mut watch = Watch::new(robot, options.dt, options.acceleration.unwrap());
     let mut tally = Tally::default();
     // Combinations that define no controller are refused, which is another test's matter.
     let Ok(mut servo) = Servo::new(robot, options) else { return tally };

@@ -186,7 +186,7 @@ fn apply(args: &ServoArgs, options: &mut ServoOptions) -> Result<()> {
     set(&mut options.dt, args.dt);
     set(&mut options.tolerance.position, args.tolerance_position);
     set(&mut options.tolerance.orientation, args.tolerance_orientation);
-    set(&mut options.acceleration, args.acceleration);
+    options.acceleration = args.acceleration;
     set(&mut options.jerk, args.jerk);
     set(&mut options.length, args.length);
     options.plant = args.plant();

@@ -23,6 +23,7 @@ mod generic_rank;
 mod moving_target;
 mod stages;
 mod tracking;
+mod turning_back;
 mod velocity_mode;
 
 use super::coupled::Coupled;
@@ -30,9 +31,9 @@ use super::elsewhere::Elsewhere;
 use super::escape::Escape;
 use super::following::TargetFollower;
 use super::inertia_weights::InertiaWeights;
-use super::limits::{BrakingMargin, limits_of_servo};
+use super::limits::{BrakingMargin, DefaultLimits, limits_of_servo};
 use super::loop_edge::LoopEdge;
-use super::loop_motions::{limits_of_loop_joints, nothing_actuated};
+use super::loop_motions::nothing_actuated;
 use super::nearest_pose::{EdgeAim, NearestPose};
 use super::options::ServoOptions;
 use super::plant::Predictor;
@@ -101,6 +102,10 @@ pub struct Servo {
     /// The pose towards which the motion of this step ends, and its error.
     edge_aim: Option<EdgeAim>,
     edge_error: Vec<f64>,
+    /// A target or twist at whose end the joints must rest, the Jacobian where they do, and a workspace.
+    ending: Option<Aim>,
+    rest_task: Matrix,
+    trial: Vec<f64>,
     /// Closed chains only.
     coupled: Option<Box<Coupled>>,
     inertia: Option<Box<InertiaWeights>>,
@@ -154,15 +159,11 @@ impl Servo {
             });
         }
         check_coordinates("mechanism of a servo", n)?;
-        let own = chain.coordinates().iter().map(|&c| mechanism.coordinates()[c].limits);
-        let limits: Vec<Limits> = own
-            .chain(limits_of_loop_joints(mechanism))
-            .map(|l| {
-                let gain = options.gain.position.max(options.gain.orientation);
-                let [a, jerk] = [options.acceleration, options.jerk];
-                limits_of_servo(l, &options.plant, [a, jerk], gain)
-            })
-            .collect();
+        let ServoOptions { acceleration, jerk, gain, ref plant, .. } = options;
+        let (default, gain) =
+            (DefaultLimits { acceleration, jerk }, gain.position.max(gain.orientation));
+        let coordinates = chain.coordinates().iter().copied();
+        let limits = limits_of_servo(mechanism, coordinates, plant, default, gain);
         let space = TaskSpace::new(options.scaling(), &chain, &limits);
         let margin =
             |(i, l): (usize, &Limits)| BrakingMargin::new(l, options.dt, space.is_locked(i));
@@ -217,6 +218,9 @@ impl Servo {
             loop_edge: None,
             edge_aim: None,
             edge_error: vec![0.0; m],
+            ending: None,
+            rest_task: Matrix::zeros(m, n),
+            trial: vec![0.0; rates],
             rates: vec![0.0; mechanism.n().max(rates)],
             accelerations: vec![0.0; mechanism.n().max(rates)],
             configuration: mechanism.home().to_vec(),
@@ -324,10 +328,11 @@ impl Servo {
         self.load_secondary(secondary_velocities);
         self.load_edge_aim(&target, pose);
         self.search_edge(q)?;
+        self.load_ending(aim);
 
         let (saturation, braking) = match self.store_unlimited_rates(q, rank) {
             Some(braking) => (Saturation::NONE, braking),
-            None => self.store_limited_rates(aim.is_rest())?,
+            None => self.store_limited_rates(q, aim.is_rest())?,
         };
 
         self.note_configuration(q);

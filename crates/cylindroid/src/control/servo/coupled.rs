@@ -110,9 +110,9 @@ impl Coupled {
         bounds
     }
 
-    /// The least acceleration limit of the actuated joints.
+    /// The least acceleration limit of the actuated joints [rad/s^2, or lengths of the mechanism/s^2].
     pub(super) fn least_acceleration(&self, limits: &[Limits]) -> f64 {
-        least_acceleration(&self.coupling.is_actuated, limits)
+        self.loops.least_acceleration(&self.coupling.is_actuated, limits)
     }
 
     /// The closed configuration nearest to the measured one.
@@ -233,12 +233,6 @@ impl Coupled {
     pub(super) fn close(&self, q: &mut [f64]) {
         self.loops.close(q);
     }
-}
-
-/// The least acceleration limit of the actuated joints.
-pub(in crate::control) fn least_acceleration(is_actuated: &[bool], limits: &[Limits]) -> f64 {
-    let actuated = limits.iter().zip(is_actuated).filter(|(_, is_actuated)| **is_actuated);
-    actuated.map(|(limits, _)| limits.acceleration).fold(f64::INFINITY, f64::min)
 }
 
 /// The actuation y nearest to these velocities of all joints (unweighted), in the weights of the

@@ -23,8 +23,8 @@ use super::jerk_limited_stop::JerkLimitedStop;
 use super::plant::Plant;
 use super::stopping::stopping_velocity;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::model::Limits;
-use crate::tolerance::{LIMIT_MET, LIMIT_ROUNDING};
+use crate::model::{JointKind, Limits, Mechanism};
+use crate::tolerance::{DEFAULT_RAMP, LIMIT_MET, LIMIT_ROUNDING};
 
 /// State of a joint: the position of a coordinate and its last commanded velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -215,27 +215,54 @@ impl VelocityBounds {
     }
 }
 
-/// The limits of a joint of a servo with this gain: those of the model within the margins of the plant,
-/// where it has no acceleration or jerk limit those of the options. The acceleration is bounded such
-/// that the jerk ends it in half of the time 1/gain: otherwise the tool swings about its target.
+/// Limits of a servo's options, for joints that have none in the model.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::control) struct DefaultLimits {
+    /// Acceleration [rad/s^2 or m/s^2]; `None` for the default ramp.
+    pub acceleration: Option<f64>,
+    /// Jerk [rad/s^3 or m/s^3].
+    pub jerk: f64,
+}
+
+/// The limits of these coordinates, then those of actuated loop joints, of a servo with this gain:
+/// those of the model within the margins of the plant, where it has no acceleration or jerk limit the
+/// default ones. The acceleration is bounded such that the jerk ends it in half of the time 1/gain:
+/// otherwise the tool swings about its target.
 pub(in crate::control) fn limits_of_servo(
-    mut own: Limits,
+    mechanism: &Mechanism,
+    coordinates: impl Iterator<Item = usize>,
     plant: &Plant,
-    [acceleration, jerk]: [f64; 2],
+    default: DefaultLimits,
     gain: f64,
-) -> Limits {
-    plant.keep_off(&mut own);
+) -> Vec<Limits> {
+    let own = coordinates.map(|c| (mechanism.coordinates()[c].limits, mechanism.unit_of(c)));
     let or = |own: &mut f64, other: f64| {
         if *own == f64::INFINITY {
             *own = other;
         }
     };
-    or(&mut own.acceleration, acceleration);
-    or(&mut own.jerk, jerk);
-    if own.jerk < f64::INFINITY && gain > 0.0 {
-        own.acceleration = own.acceleration.min(0.5 * own.jerk / gain);
-    }
-    own
+    own.chain(limits_of_loop_joints(mechanism))
+        .map(|(mut own, unit)| {
+            plant.keep_off(&mut own);
+            or(&mut own.acceleration, default.acceleration.unwrap_or(DEFAULT_RAMP * unit));
+            or(&mut own.jerk, default.jerk);
+            if own.jerk < f64::INFINITY && gain > 0.0 {
+                own.acceleration = own.acceleration.min(0.5 * own.jerk / gain);
+            }
+            own
+        })
+        .collect()
+}
+
+/// The limits of loop joints that are actuated, without positions, which are no coordinates, and the
+/// units of their motions [1 or m].
+fn limits_of_loop_joints(mechanism: &Mechanism) -> impl Iterator<Item = (Limits, f64)> + '_ {
+    let actuated = mechanism.loops().iter().filter(|l| l.actuated);
+    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+    actuated.map(move |l| {
+        let unit = if l.kind == JointKind::Prismatic { mechanism.reach() } else { 1.0 };
+        (Limits { lower, upper, ..l.limits }, unit)
+    })
 }
 
 /// The largest number between one that fits and one that does not.

@@ -258,6 +258,18 @@ impl LoopMotions {
         ActuationMap::of(&self.mechanism.state(&next)?, &self.weights, &self.locked)
     }
 
+    /// The least acceleration limit of the actuated joints [rad/s^2, or lengths of the mechanism/s^2].
+    pub(in crate::control) fn least_acceleration(
+        &self,
+        is_actuated: &[bool],
+        limits: &[Limits],
+    ) -> f64 {
+        let actuated = limits.iter().zip(is_actuated).enumerate().filter(|(_, (_, is))| **is);
+        actuated
+            .map(|(i, (limits, _))| limits.acceleration / self.mechanism.unit_of(i))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Bounds the velocity of a passive joint such that no step, nor the way to rest, passes a type II
     /// singularity unseen: the actuated share of motions falls by at most a half in it.
     pub(in crate::control) fn bound_passive(
@@ -295,15 +307,6 @@ impl LoopMotions {
             }
         }
     }
-}
-
-/// The limits of loop joints that are actuated: without positions, which are no coordinates.
-pub(in crate::control) fn limits_of_loop_joints(
-    mechanism: &Mechanism,
-) -> impl Iterator<Item = Limits> + '_ {
-    let actuated = mechanism.loops().iter().filter(|l| l.actuated);
-    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-    actuated.map(move |l| Limits { lower, upper, ..l.limits })
 }
 
 /// The error for mechanisms in which no joint is actuated.

@@ -34,11 +34,10 @@ mod stopping;
 mod task_space;
 mod twist_step;
 
-pub(super) use coupled::least_acceleration;
 pub(super) use edge::curvature_into;
 pub(super) use jerk_limited_stop::JerkLimitedStop;
-pub(super) use limits::{acceleration_of, limits_of_servo};
-pub(super) use loop_motions::{LoopMotions, limits_of_loop_joints, nothing_actuated};
+pub(super) use limits::{DefaultLimits, acceleration_of, limits_of_servo};
+pub(super) use loop_motions::{LoopMotions, nothing_actuated};
 pub(super) use plant::{Predictor, SimulatedRobot};
 pub(super) use saddle::{Progress, Saddle, Surroundings};
 pub(super) use secondary::{SecondaryVelocities, add_posture};

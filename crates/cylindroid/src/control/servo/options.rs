@@ -83,9 +83,9 @@ pub struct ServoOptions {
     pub inertia_weights: bool,
     /// Largest speeds of the end effector.
     pub speed: SpeedLimit,
-    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; by default the
-    /// default ramp, [`tolerance::DEFAULT_RAMP`], and none for closed chains; infinite for none.
-    pub acceleration: f64,
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; `None` for the
+    /// default ramp, [`tolerance::DEFAULT_RAMP`], infinite for none.
+    pub acceleration: Option<f64>,
     /// Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3]; infinite, the default,
     /// for none. Joints without drives have none.
     pub jerk: f64,
@@ -103,8 +103,8 @@ pub struct ServoOptions {
 impl ServoOptions {
     /// The defaults for a mechanism: its tool, or the reference of a closed chain; complete poses
     /// (x, y and rz in the plane); 1 kHz; gains of 5/s; the truncated inverse; the characteristic
-    /// length of the mechanism; 20 rad/s^2 or m/s^2 where the model of a tree has no acceleration limit; twists
-    /// that hold for 0.1 s.
+    /// length of the mechanism; the default ramp where the model has no acceleration limit; twists that
+    /// hold for 0.1 s.
     #[must_use]
     pub fn new(mechanism: &Mechanism) -> Self {
         let closed = mechanism.is_closed();
@@ -127,7 +127,7 @@ impl ServoOptions {
             joint_weights: Vec::new(),
             inertia_weights: false,
             speed: SpeedLimit { linear: f64::INFINITY, angular: f64::INFINITY },
-            acceleration: if closed { f64::INFINITY } else { tolerance::DEFAULT_RAMP },
+            acceleration: None,
             jerk: f64::INFINITY,
             plant: Plant::IDEAL,
             command_timeout: 0.1,
@@ -211,7 +211,7 @@ impl ServoOptions {
             ("orientation tolerance", self.tolerance.orientation),
             ("linear speed", self.speed.linear),
             ("angular speed", self.speed.angular),
-            ("acceleration", self.acceleration),
+            ("acceleration", self.acceleration.unwrap_or(f64::INFINITY)),
             ("jerk", self.jerk),
             ("largest projection", self.largest_projection),
             ("command timeout", self.command_timeout),

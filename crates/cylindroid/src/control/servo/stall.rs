@@ -15,6 +15,7 @@
 //! Units    m, rad, s
 //! Checked  tests/it/servo/stall.rs::stall_*
 
+use super::stopping::stopping_time;
 use crate::control::solver::bounds::LimitKind;
 use crate::linalg::Svd;
 use crate::model::Limits;
@@ -136,15 +137,7 @@ impl BrakingState {
         let speed = velocity.abs();
         let met = matches!(met, Some(LimitKind::Acceleration | LimitKind::Jerk));
         self.accelerating |= met && speed > before.abs();
-        if speed > 0.0 {
-            let Limits { acceleration: a, jerk, .. } = *limits;
-            let ramps = if jerk == f64::INFINITY {
-                0.0
-            } else {
-                2.0 * (a / jerk).min((speed / jerk).sqrt())
-            };
-            self.stopping_time = self.stopping_time.max(speed / a + ramps);
-        }
+        self.stopping_time = self.stopping_time.max(stopping_time(speed, limits));
     }
 }
 

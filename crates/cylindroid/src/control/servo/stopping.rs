@@ -7,7 +7,20 @@
 //! Valid    d >= 0, any limits, infinite ones included
 //! Checked  tests in this file
 
+use crate::model::Limits;
 use crate::scalar::clamp;
+
+/// The time in which a joint stops from this speed, with the ramps of its jerk limit (s).
+#[inline]
+pub(super) fn stopping_time(speed: f64, limits: &Limits) -> f64 {
+    if speed == 0.0 {
+        return 0.0;
+    }
+    let Limits { acceleration: a, jerk, .. } = *limits;
+    let ramps =
+        if jerk == f64::INFINITY { 0.0 } else { 2.0 * (a / jerk).min((speed / jerk).sqrt()) };
+    speed / a + ramps
+}
 
 /// Upper bound of the distance in which steps of `dt` with deceleration `acceleration` stop a
 /// velocity >= 0; infinite or NaN if the acceleration is unlimited or zero.

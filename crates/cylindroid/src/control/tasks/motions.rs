@@ -10,9 +10,7 @@
 use super::levels::TaskRows;
 use super::options::TaskServoOptions;
 use crate::closure::ActuationMap;
-use crate::control::servo::{
-    JointState, LoopMotions, is_locked, least_acceleration, nothing_actuated,
-};
+use crate::control::servo::{JointState, LoopMotions, is_locked, nothing_actuated};
 use crate::control::solver::bounds::VelocityBounds;
 use crate::control::solver::saturation::Coupling;
 use crate::error::Result;
@@ -34,7 +32,7 @@ pub(super) struct Loops {
     motions: LoopMotions,
     coupling: Coupling,
     weights: Vec<f64>,
-    /// The least acceleration limit of the actuated joints.
+    /// The least acceleration limit of the actuated joints [rad/s^2, or lengths of the mechanism/s^2].
     acceleration: f64,
     /// The smallest actuated share of a motion that moves a task, where it is small.
     weakest: Option<f64>,
@@ -62,7 +60,7 @@ impl Motions {
         Ok(Self::Loops(Box::new(Loops {
             coupling: Coupling::new(motions.are_actuated(), motions.actuated),
             weights: (0..limits.len()).map(weight).collect(),
-            acceleration: least_acceleration(&motions.are_actuated(), limits),
+            acceleration: motions.least_acceleration(&motions.are_actuated(), limits),
             weakest: None,
             motions,
         })))

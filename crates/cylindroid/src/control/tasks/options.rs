@@ -101,7 +101,8 @@ pub struct TaskServoOptions {
     /// A weight for each coordinate (a large weight keeps it still) [-, or 1/m^2 of a length: 1/L^2
     /// weighs a slider as an angle]; empty for 1.
     pub joint_weights: Vec<f64>,
-    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2].
+    /// Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; infinite, the
+    /// default, for none: tasks with large gains do not brake for the default ramp of a servo.
     pub acceleration: f64,
     /// Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3].
     pub jerk: f64,

@@ -27,7 +27,7 @@ use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{
-    BrakingState, Plant, Predictor, StallDetector, Status, acceleration_of, limits_of_loop_joints,
+    BrakingState, DefaultLimits, Plant, Predictor, StallDetector, Status, acceleration_of,
     limits_of_servo,
 };
 use crate::control::solver::active_set::ActiveSet;
@@ -144,14 +144,10 @@ impl TaskServo {
     ) -> Result<Self> {
         check(mechanism, &tasks, &options)?;
         let n = mechanism.n();
-        let own = mechanism.coordinates().iter().map(|c| c.limits);
-        let limits: Vec<Limits> = own
-            .chain(limits_of_loop_joints(mechanism))
-            .map(|l| {
-                let gain = tasks.iter().map(|task| task.gain).fold(0.0, f64::max);
-                limits_of_servo(l, &options.plant, [options.acceleration, options.jerk], gain)
-            })
-            .collect();
+        let TaskServoOptions { acceleration, jerk, ref plant, .. } = options;
+        let default = DefaultLimits { acceleration: Some(acceleration), jerk };
+        let gain = tasks.iter().map(|task| task.gain).fold(0.0, f64::max);
+        let limits = limits_of_servo(mechanism, 0..n, plant, default, gain);
         let has_jerks = limits.iter().any(|l| l.jerk < f64::INFINITY);
         let desired_rates = has_jerks.then(|| vec![0.0; limits.len()]);
         let motions = Motions::new(mechanism, &options, &limits)?;

@@ -80,7 +80,7 @@ fn looking_at_a_posture_changes_no_motion() {
             let pose = robot.state(robot.home()).unwrap().pose(s.options().end_effector).unwrap();
             Pose { translation: pose.translation + Vec3::new(0.05, -0.02, 0.0), ..pose }
         };
-        let mut plain = servo(&robot, |o| o.acceleration = 2.0);
+        let mut plain = servo(&robot, |o| o.acceleration = Some(2.0));
         let mut looked = plain.clone();
         let (mut a, mut b) = (robot.home().to_vec(), robot.home().to_vec());
         for i in 0..50 {

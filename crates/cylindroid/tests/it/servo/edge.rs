@@ -20,7 +20,8 @@ struct ToTheEdge {
 /// From home towards a target 1.5 m away in this direction, at most a minute.
 fn to_the_edge(name: &str, direction: Vec3, acceleration: f64, dt: f64) -> ToTheEdge {
     let robot = catalogue::load(name).unwrap();
-    let options = ServoOptions { acceleration, dt, ..ServoOptions::new(&robot) };
+    let options =
+        ServoOptions { acceleration: Some(acceleration), dt, ..ServoOptions::new(&robot) };
     to_the_edge_with(&robot, direction, options)
 }
 
@@ -79,8 +80,12 @@ fn all_inverses_come_to_rest_at_the_edge() {
     for (method, acceleration) in Method::ALL.into_iter().flat_map(|m| [2.0, 10.0].map(|a| (m, a)))
     {
         for direction in [Vec3::X, Vec3::new(-0.6, 0.64, 0.48)] {
-            let options =
-                ServoOptions { acceleration, dt: 1e-2, method, ..ServoOptions::new(&robot) };
+            let options = ServoOptions {
+                acceleration: Some(acceleration),
+                dt: 1e-2,
+                method,
+                ..ServoOptions::new(&robot)
+            };
             let motion = to_the_edge_with(&robot, direction, options);
             let case =
                 format!("{} {direction:?} at {acceleration} rad/s^2: {motion:?}", method.name());

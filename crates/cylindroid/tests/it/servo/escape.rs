@@ -173,7 +173,7 @@ fn a_twist_opens_the_elbow() {
     let robot = planar(2);
     for acceleration in [f64::INFINITY, 20.0] {
         let mut servo =
-            servo(&robot, |o| (o.task, o.acceleration) = (Task::POSITION, acceleration));
+            servo(&robot, |o| (o.task, o.acceleration) = (Task::POSITION, Some(acceleration)));
         let mut q = vec![0.0, 0.0];
         let back = Twist { linear: Vec3::X * -0.2, angular: Vec3::ZERO };
         for _ in 0..3000 {

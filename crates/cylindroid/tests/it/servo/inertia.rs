@@ -35,7 +35,7 @@ fn servo(arm: &Mechanism, inertia: bool, weights: Vec<f64>) -> cylindroid::Resul
         task: Task::POSITION,
         inertia_weights: inertia,
         joint_weights: weights,
-        acceleration: f64::INFINITY, // the first step is compared
+        acceleration: Some(f64::INFINITY), // the first step is compared
         ..ServoOptions::new(arm)
     };
     Servo::new(arm, options)

@@ -163,7 +163,7 @@ fn drives_of_closed_chains_keep_jerks() {
         let robot = cylindroid::load(name).unwrap();
         let (dt, jerk) = (1e-3, 20.0);
         let mut servo = servo(&robot, |o| {
-            (o.dt, o.jerk, o.acceleration) = (dt, jerk, 5.0);
+            (o.dt, o.jerk, o.acceleration) = (dt, jerk, Some(5.0));
             if name == "five-bar" {
                 o.task = Task::POSITION;
             }

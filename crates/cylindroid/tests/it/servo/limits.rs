@@ -9,7 +9,7 @@ fn limits_scale_before_they_bend() {
     let robot = planar(2);
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
-        o.acceleration = f64::INFINITY; // the first step is compared
+        o.acceleration = Some(f64::INFINITY); // the first step is compared
         o.gain = ServoGains { position: 200.0, orientation: 1.0 };
     });
     let q = [0.4, 0.9];
@@ -49,7 +49,7 @@ fn saturation_uses_the_other_joints() {
     let robot = b.build().unwrap();
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
-        o.acceleration = f64::INFINITY; // the first step is compared
+        o.acceleration = Some(f64::INFINITY); // the first step is compared
         o.gain = ServoGains { position: 1.0, orientation: 1.0 };
     });
     let q = [0.3, 0.8, -0.5, 0.9];
@@ -105,7 +105,7 @@ fn limits_hold_for_any_options() {
         let mut servo = servo(robot, |o| {
             o.dt = dt;
             o.gain = ServoGains { position: gain, orientation: gain };
-            o.acceleration = acceleration;
+            o.acceleration = Some(acceleration);
             o.method = Method::ALL[round % Method::ALL.len()];
             if let Method::SelectivelyDamped { max_joint_velocity: rate } = &mut o.method {
                 *rate = max_joint_velocity;
@@ -164,7 +164,7 @@ fn singular_poses_keep_rates_bounded() {
                         rotation: Rotation::exp(direction * (0.3 * sign)) * start.rotation,
                     };
                     let mut servo = servo(robot, |o| {
-                        (o.method, o.acceleration) = (method, f64::INFINITY);
+                        (o.method, o.acceleration) = (method, Some(f64::INFINITY));
                     });
                     let (gain, length) = (servo.options().gain, servo.options().length);
                     let check = |sample: cylindroid::control::TrajectorySample<'_>| {
@@ -231,7 +231,7 @@ fn joint_weights_keep_joints_still() {
     let rates = |weights: Vec<f64>| {
         let mut servo = servo(&robot, |o| {
             o.task = Task::POSITION;
-            o.acceleration = f64::INFINITY; // the first step is compared
+            o.acceleration = Some(f64::INFINITY); // the first step is compared
             o.joint_weights = weights;
         });
         servo.step(&q, target).unwrap();
@@ -255,7 +255,7 @@ fn the_first_step_is_a_ramp() {
     let mut target = ur5e.state(&q).unwrap().pose(ur5e.tool()).unwrap();
     target.translation += Vec3::new(-0.3, 0.2, 0.1);
     let fastest = |acceleration: Option<f64>| {
-        let mut servo = servo(&ur5e, |o| o.acceleration = acceleration.unwrap_or(o.acceleration));
+        let mut servo = servo(&ur5e, |o| o.acceleration = acceleration);
         servo.step(&q, target).unwrap();
         let step = servo.options().dt;
         servo.joint_velocities().iter().fold(0.0, |m: f64, v| m.max(v.abs())) / step
@@ -271,7 +271,7 @@ fn the_default_ramp_costs_no_targets() {
     for name in ["ur5e", "iiwa14", "puma560"] {
         let robot = catalogue::load(name).unwrap();
         let runs = 100;
-        let reached = |acceleration: f64| {
+        let reached = |acceleration: Option<f64>| {
             let mut random = Random(197);
             let mut servo = servo(&robot, |o| (o.dt, o.acceleration) = (4e-3, acceleration));
             let motions = (0..runs).filter(|_| {
@@ -282,8 +282,8 @@ fn the_default_ramp_costs_no_targets() {
             });
             motions.count()
         };
-        let with = reached(cylindroid::tolerance::DEFAULT_RAMP);
-        let without = reached(f64::INFINITY);
+        let with = reached(None);
+        let without = reached(Some(f64::INFINITY));
         println!("{name}: {with} of {runs} reached with the default ramp, {without} without");
         assert!(with + 3 >= without, "{name}: {with} {without}");
     }

@@ -23,7 +23,7 @@ fn options(mechanism: &Mechanism, acceleration: f64) -> ServoOptions {
     let mut options = ServoOptions::new(mechanism);
     options.task = Task::POSITION;
     options.dt = DT;
-    options.acceleration = acceleration;
+    options.acceleration = Some(acceleration);
     options.tolerance.position = 1e-3;
     options
 }

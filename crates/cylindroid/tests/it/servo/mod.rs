@@ -77,7 +77,7 @@ pub(crate) fn run_checked_for(
     target: Pose,
 ) -> MotionResult {
     let dt = servo.options().dt;
-    let fallback = servo.options().acceleration;
+    let fallback = servo.options().acceleration.unwrap_or(f64::INFINITY);
     let mut before = vec![0.0; robot.n()];
     servo.reset();
     simulate(

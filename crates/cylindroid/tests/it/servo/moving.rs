@@ -6,7 +6,7 @@ const DT: f64 = 4e-3;
 
 fn start(name: &str, acceleration: f64) -> (Mechanism, Servo, Vec<f64>, Pose) {
     let robot = catalogue::load(name).unwrap();
-    let servo = servo(&robot, |o| (o.dt, o.acceleration) = (DT, acceleration));
+    let servo = servo(&robot, |o| (o.dt, o.acceleration) = (DT, Some(acceleration)));
     let mut q = robot.home().to_vec();
     q.iter_mut().enumerate().for_each(|(i, x)| *x += 0.1 + 0.02 * i as f64);
     let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();

@@ -226,6 +226,7 @@ fn the_servo_stops_before_a_motion_escapes_the_drives() {
     let mut options = ServoOptions::new(&five_bar);
     options.task.components = [true, true, false, false, false, false];
     options.speed.linear = 1.0;
+    options.acceleration = Some(f64::INFINITY);
     let mut servo = Servo::new(&five_bar, options).unwrap();
     let mut target = five_bar.state(&start).unwrap().pose(five_bar.reference()).unwrap();
     target.translation.y -= 2.0;
@@ -257,7 +258,7 @@ fn weak_joints_keep_loops_closed() {
     for (name, way) in [("five-bar", [0.03, -0.03, 0.0]), ("stewart", [0.1, 0.0, 0.1])] {
         let mechanism = catalogue::load(name).unwrap();
         let mut options = ServoOptions::new(&mechanism);
-        options.acceleration = 0.5;
+        options.acceleration = Some(0.5);
         options.task.components = [true, true, name == "stewart", false, false, false];
         let dt = options.dt;
         let mut servo = Servo::new(&mechanism, options).unwrap();
@@ -318,7 +319,7 @@ fn no_step_jumps_across_a_type_ii_singularity() {
         for dt in [1e-3, 2e-3, 1e-2] {
             for acceleration in [5.0, 10.0, 100.0, f64::INFINITY] {
                 let mut options = ServoOptions::new(&mechanism);
-                (options.dt, options.acceleration) = (dt, acceleration);
+                (options.dt, options.acceleration) = (dt, Some(acceleration));
                 let end_effector = options.end_effector;
                 let pose = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
                 let target = Pose { translation: pose.translation + Vec3::new(x, y, 0.0), ..pose };

@@ -87,7 +87,7 @@ pub(super) const PLANTS: [Plant; 4] = [
 
 fn options(mechanism: &Mechanism, dt: f64) -> ServoOptions {
     let mut options = ServoOptions::new(mechanism);
-    (options.dt, options.acceleration) = (dt, 10.0);
+    (options.dt, options.acceleration) = (dt, Some(10.0));
     options.tolerance.position = 1e-3;
     options.tolerance.orientation = 5e-3;
     options
@@ -306,7 +306,7 @@ fn legs_keep_their_limits() {
     for plant in PLANTS {
         for known in [plant, Plant::IDEAL] {
             let mut options = ServoOptions::new(&mechanism);
-            (options.dt, options.acceleration, options.plant) = (0.01, 5.0, known);
+            (options.dt, options.acceleration, options.plant) = (0.01, Some(5.0), known);
             let mut servo = Servo::new(&mechanism, options).unwrap();
             let home = mechanism.home();
             let mut drives = Drives::new(home, plant);
@@ -384,7 +384,7 @@ fn tasks_keep_limits_too() {
     for plant in PLANTS {
         for known in [plant, Plant::IDEAL] {
             let mut options = TaskServoOptions::new(&mechanism);
-            (options.dt, options.acceleration, options.plant) = (0.01, 10.0, known);
+            (options.dt, options.acceleration, options.plant) = (0.01, Some(10.0), known);
             let mut beyond = 0.0_f64;
             for _ in 0..3 {
                 let of = |frame: EndEffector, way: Vec3| {

@@ -12,7 +12,7 @@ fn random_starts_to_random_targets() {
         let mut random = Random(seed);
         let mut servo = servo(&robot, |o| {
             o.dt = 4e-3;
-            o.acceleration = 40.0;
+            o.acceleration = Some(40.0);
             o.secondary = vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }];
             o.tolerance = PoseTolerance { position: 1e-4, orientation: 1e-3 };
         });

@@ -123,7 +123,7 @@ fn secondary_manipulability_gradient_by_finite_differences() {
     }
     let mut servo = servo(&robot, |o| {
         o.task = task;
-        o.acceleration = f64::INFINITY; // the first step is compared
+        o.acceleration = Some(f64::INFINITY); // the first step is compared
         o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
     });
     let state = robot.state(&q).unwrap();
@@ -224,7 +224,7 @@ fn secondary_manipulability_gradient_of_several_rows() {
             RowSpace::exact(&Svd::of(&scaled(&q))).project_out(&mut expected);
             let mut servo = servo(&robot, |o| {
                 o.task = task;
-                o.acceleration = f64::INFINITY; // the first step is compared
+                o.acceleration = Some(f64::INFINITY); // the first step is compared
                 o.joint_weights = weights.clone();
                 o.secondary = vec![SecondaryTask::Manipulability { gain: 1.0 }];
             });
@@ -253,7 +253,7 @@ fn secondary_limit_avoidance_pushes_by_the_room_that_is_left() {
     let robot = b.build().unwrap();
     let mut servo = servo(&robot, |o| {
         o.task = Task::POSITION;
-        o.acceleration = f64::INFINITY; // the first step is compared
+        o.acceleration = Some(f64::INFINITY); // the first step is compared
         // 0.8 rad of the range of 4 rad
         o.secondary = vec![SecondaryTask::LimitAvoidance { gain: 0.5, margin: 0.2 }];
     });

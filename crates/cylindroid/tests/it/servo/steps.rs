@@ -222,7 +222,7 @@ fn weak_joints_arrive() {
     for acceleration in [10.0, 1.0, 0.5, 1e-3] {
         for method in [Method::default(), Method::ALL[1], Method::ALL[4]] {
             let mut servo = servo(&robot, |o| {
-                o.acceleration = acceleration;
+                o.acceleration = Some(acceleration);
                 o.method = method;
             });
             let mut most = 0.0_f64;
@@ -249,7 +249,7 @@ fn weak_joints_arrive() {
     let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let target = Pose { translation: start.translation + Vec3::new(-0.1, 0.2, -0.1), ..start };
     for acceleration in [10.0, 1.0, 0.5] {
-        let mut servo = servo(&robot, |o| o.acceleration = acceleration);
+        let mut servo = servo(&robot, |o| o.acceleration = Some(acceleration));
         let outcome = run_checked(&robot, &mut servo, robot.home(), target);
         assert!(outcome.reached, "{acceleration}: {outcome:?}");
     }
@@ -260,7 +260,7 @@ fn weak_joints_arrive() {
 fn reached_means_at_rest() {
     let robot = planar(1);
     let target = robot.state(&[1.0]).unwrap().pose(robot.tool()).unwrap();
-    let mut servo = servo(&robot, |o| o.acceleration = 1.0);
+    let mut servo = servo(&robot, |o| o.acceleration = Some(1.0));
     // Up to speed towards a target farther on, which is then exchanged for the place passed.
     let far = robot.state(&[3.0]).unwrap().pose(robot.tool()).unwrap();
     let mut q = vec![0.0];

@@ -87,7 +87,7 @@ fn servo(random: &mut Random<'_>, record: &mut Record, m: &Mechanism) {
     options.task = [Task::POSE, Task::POSITION][random.below(2)];
     options.joint_weights = weights(random, m.n());
     if random.once_in(2) {
-        options.acceleration = random.power(-1.0, 2.0);
+        options.acceleration = Some(random.power(-1.0, 2.0));
     }
     let mut servo = match Servo::new(m, options) {
         Ok(servo) => servo,

@@ -69,7 +69,7 @@ fn options(robot: &Mechanism, random: &mut Random<'_>) -> ServoOptions {
     }
     options.method = super::laws::method(random);
     options.length *= random.power(-0.5, 0.5);
-    options.acceleration = [f64::INFINITY, random.power(-0.3, 1.5)][random.below(2)];
+    options.acceleration = Some([f64::INFINITY, random.power(-0.3, 1.5)][random.below(2)]);
     if random.once_in(4) {
         options.jerk = random.power(1.0, 3.0);
     }
@@ -133,7 +133,7 @@ fn singularities() {
         let mut options = ServoOptions::new(&robot);
         options.dt = random.within(0.02, 0.05);
         options.task = [Task::POSITION, Task::PLANAR][random.below(2)];
-        options.acceleration = [f64::INFINITY, random.power(0.0, 1.5)][random.below(2)];
+        options.acceleration = Some([f64::INFINITY, random.power(0.0, 1.5)][random.below(2)]);
         let here = tool_at(&robot, robot.home());
         let way = Vec3 { z: 0.0, ..random.vec3(1.5) };
         let goal = Pose { translation: here.translation + way, ..here };

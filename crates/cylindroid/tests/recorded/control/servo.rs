@@ -61,7 +61,7 @@ pub(super) fn options(robot: &Mechanism, random: &mut Random<'_>) -> ServoOption
     options.tolerance = PoseTolerance { position: size, orientation: 2.0 * size };
     options.method = method(random);
     options.length *= random.power(-0.6, 0.6);
-    options.acceleration = [f64::INFINITY, 20.0, random.power(-0.5, 2.0)][random.below(3)];
+    options.acceleration = Some([f64::INFINITY, 20.0, random.power(-0.5, 2.0)][random.below(3)]);
     if random.once_in(4) {
         options.jerk = random.power(0.5, 3.5);
     }

@@ -20,7 +20,7 @@ fn slow_options(robot: &Mechanism, random: &mut Random<'_>) -> ServoOptions {
         options.task = task(random);
     }
     if random.once_in(4) {
-        options.acceleration = random.power(-1.0, 1.0);
+        options.acceleration = Some(random.power(-1.0, 1.0));
     }
     options
 }
@@ -150,7 +150,7 @@ fn break_option(options: &mut ServoOptions, robot: &Mechanism, random: &mut Rand
         5 => options.tolerance.orientation = bad,
         6 => options.speed = SpeedLimit { linear: bad, angular: 1.0 },
         7 => options.speed = SpeedLimit { linear: 1.0, angular: bad },
-        8 => options.acceleration = bad,
+        8 => options.acceleration = Some(bad),
         9 => options.jerk = bad,
         10 => options.largest_projection = bad,
         11 => options.command_timeout = bad,

@@ -30,7 +30,7 @@ const NONE_LEFT: f64 = 1e-5;
 
 /// Errors up to this are those of targets that are tracked, of arms where no singularity is near (scaled)
 /// [-]: joints that follow them at the usual gain stop within a hundredth of a radian at 0.5 rad/s^2.
-const TRACKED: f64 = 0.02;
+pub(super) const TRACKED: f64 = 0.02;
 
 /// Velocities of joints this many times as large as that of the task approach an edge (scaled) [-].
 const AMPLIFIED: f64 = 3.0;

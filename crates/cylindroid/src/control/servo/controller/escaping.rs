@@ -16,19 +16,23 @@ impl Servo {
     /// Bounds, computes and stores the joint velocities; where nothing is commanded, all joints brake.
     pub(super) fn store_limited_rates(
         &mut self,
+        q: &[f64],
         brakes: bool,
     ) -> Result<(Saturation, BrakingState)> {
         self.load_bounds();
         let mut saturation = self.saturate(brakes)?;
         Error::check_finite("joint velocities", &self.primary)?;
         let share = self.progress();
+        let mut slows = false;
         if share.is_some() && self.escape() {
             saturation = Saturation { scale: 0.0, direction_lost: true };
+        } else {
+            slows = self.brake_in_time(q);
         }
         let braking = self.store_rates();
         if let Some(escape) = &mut self.escape {
             match share {
-                Some(share) if !braking.accelerating => {
+                Some(share) if !braking.accelerating && !slows => {
                     escape.progress.record(share, self.options.dt)
                 }
                 Some(_) => {}
