@@ -223,6 +223,19 @@ def test_paths_and_moves():
         cy.WaypointMove(way, times=[0, 3, 5, 5.01])
     with pytest.raises(cy.InvalidOptionError, match="speeds follow from them"):
         cy.WaypointMove(way, times=[0, 3, 5, 7], speed=0.1)
+    with pytest.raises(cy.InvalidOptionError, match="speeds follow from them"):
+        cy.WaypointMove(way, times=[0, 3, 5, 7], speeds=[0.1, 0.1, 0.1])
+    # One speed for each segment; the bound of all counts only if it is given.
+    same = cy.WaypointMove(way, speeds=[0.1, 0.1, 0.1])
+    assert abs(same.duration - through.duration) < 1e-12
+    fast, slow = (cy.WaypointMove(way, speeds=[0.4, v, 0.4]).duration for v in (0.4, 0.02))
+    assert slow > fast + 2
+    bounded = cy.WaypointMove(way, speeds=[0.4, 0.4, 0.4], speed=0.1)
+    assert abs(bounded.duration - through.duration) < 1e-12
+    with pytest.raises(cy.DimensionError, match="speeds of the waypoints"):
+        cy.WaypointMove(way, speeds=[0.1, 0.1])
+    with pytest.raises(cy.InvalidOptionError, match="0 m/s from waypoint 1 to 2"):
+        cy.WaypointMove(way, speeds=[0.1, 0, 0.1])
     assert np.isfinite(cy.WaypointMove(way, times=[0, 1e300, 2e300, 3e300]).duration)
     free = cy.WaypointMove(way, speed=np.inf).duration
     assert abs(free / cy.WaypointMove(way, speed=1e300).duration - 1) < 0.2

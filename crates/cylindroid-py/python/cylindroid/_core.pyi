@@ -232,6 +232,7 @@ class WaypointMove:
         times: ArrayLike | None = None,
         speed: float | tuple[float, float] | ArrayLike | None = None,
         acceleration: float | tuple[float, float] | ArrayLike | None = None,
+        speeds: ArrayLike | None = None,
     ) -> WaypointMove: ...
     @property
     def duration(self) -> float: ...

@@ -135,4 +135,5 @@ calls! {
     control::goals_of;
     control::simulate = |servo: &'static mut Servo, q: &'static [f64], duration: f64, target: Target, last: bool| { control::simulate(servo, q, duration, move |_| (target, last), |_| ()) };
     control::simulate_twist = |servo: &'static mut Servo, q: &'static [f64], duration: f64, twist: Option<Twist>| { control::simulate_twist(servo, q, duration, move |_, _| Ok(twist), |_| ()) };
+    control::WaypointMove::with_speeds;
 }
