@@ -303,6 +303,8 @@ def calls():
         ("Servo.step_twist", servo().step_twist, {"q": PANDA.home, "twist": TWIST}),
         ("Servo.step_actuated", servo().step_actuated,
          {"actuated": PANDA.home, "target": NEAR, "feed_forward": TWIST, "sensors": {}}),
+        ("Servo.step_twist_actuated", servo().step_twist_actuated,
+         {"actuated": PANDA.home, "twist": TWIST, "sensors": {}}),
         ("Servo.start_from", servo().start_from, {"q": PANDA.home}),
         ("Servo.advance", servo().advance, {"q": PANDA.home}),
         ("Servo.simulate", servo().simulate,

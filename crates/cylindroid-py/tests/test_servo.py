@@ -434,6 +434,35 @@ def test_parallel_robots_are_driven_from_their_actuated_joints():
         servo.step_actuated(measured + [0.9, -0.9, 0.9, -0.9, 0.9, -0.9], target)
 
 
+def test_drives_follow_twists():
+    stewart = cy.load("stewart")
+    legs = [i for i, name in enumerate(stewart.joint_names) if name in stewart.actuated]
+    servo = cy.Servo(stewart, dt=0.002, acceleration=5.0, command_timeout=0.02)
+    twist = np.array([0.02, -0.01, 0.03, 0.0, 0.0, 0.1])
+    measured = stewart.home[legs].copy()
+    for _ in range(200):
+        velocities = servo.step_twist_actuated(measured, twist)
+        measured += 0.002 * velocities[legs]
+    assert servo.status == "following" and not servo.timed_out
+    np.testing.assert_allclose(servo.achieved_twist, twist, atol=1e-6)
+    for _ in range(200):
+        velocities = servo.step_twist_actuated(measured)
+        measured += 0.002 * velocities[legs]
+    assert servo.status == "at-rest" and servo.timed_out
+    name = stewart.joint_names[legs[0]]
+    with pytest.raises(cy.InvalidOptionError, match="sensors"):
+        servo.step_twist_actuated(measured, twist, sensors={name: 0.0})
+    with pytest.raises(cy.UnknownNameError, match="elbow"):
+        servo.step_twist_actuated(measured, twist, sensors={"elbow": 0.0})
+    with pytest.raises(cy.DimensionError, match="actuated"):
+        servo.step_twist_actuated(measured[:3], twist)
+    with pytest.raises(cy.InvalidOptionError, match="actuated positions = 'leg.*loops open by"):
+        servo.step_twist_actuated(measured + [0.9, -0.9, 0.9, -0.9, 0.9, -0.9], twist)
+    # A step towards a target ends velocity mode.
+    servo.step_actuated(measured, stewart.fk(servo.configuration, servo.frame))
+    assert servo.status in ("moving", "reached") and servo.achieved_twist is None
+
+
 def test_passive_joints_that_are_measured_too_count():
     five_bar = cy.load("five-bar")
     q = five_bar.home.copy()

@@ -15,6 +15,7 @@ mod jerk;
 mod just_beyond;
 mod limits;
 mod measured;
+mod measured_twist;
 mod moving;
 mod object;
 mod plant;

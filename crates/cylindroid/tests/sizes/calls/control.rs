@@ -81,6 +81,8 @@ calls! {
     control::Servo::step_actuated = |s: &'static mut Servo, q: &'static [f64], to: Target| s.step_actuated(q, to);
     control::Servo::step_measured = |s: &'static mut Servo, q: &'static [f64], more: &'static [(usize, f64)], to: Target| { s.step_measured(q, more, to) };
     control::Servo::step_twist;
+    control::Servo::step_twist_actuated;
+    control::Servo::step_twist_measured;
     control::Servo::step_with = |s: &'static mut Servo, q: &'static [f64], to: Target, extra: &'static [f64]| s.step_with(q, to, extra);
     control::ServoOptions::check;
     control::ServoOptions::default_secondary;
