@@ -30,6 +30,7 @@ mod task_edges;
 mod task_invariance;
 mod task_kinds;
 mod task_reports;
+mod task_twist;
 mod tasks;
 mod twist;
 

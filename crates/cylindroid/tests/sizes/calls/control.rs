@@ -101,6 +101,8 @@ calls! {
     control::TaskServo::advance = |s: &'static TaskServo, q: &'static mut [f64]| q.len() >= s.mechanism().n() && { s.advance(q); true };
     control::TaskServo::collision_model;
     control::TaskServo::collision_model_mut;
+    control::TaskServo::command_twist;
+    control::TaskServo::commanded_twist;
     control::TaskServo::dt;
     control::TaskServo::half_spaces;
     control::TaskServo::joint_velocities;
@@ -133,9 +135,9 @@ calls! {
     control::WaypointMove::new;
     control::WaypointMove::target;
     control::WaypointMove::timed;
+    control::WaypointMove::with_speeds;
     control::find_reachable_configuration;
     control::goals_of;
     control::simulate = |servo: &'static mut Servo, q: &'static [f64], duration: f64, target: Target, last: bool| { control::simulate(servo, q, duration, move |_| (target, last), |_| ()) };
     control::simulate_twist = |servo: &'static mut Servo, q: &'static [f64], duration: f64, twist: Option<Twist>| { control::simulate_twist(servo, q, duration, move |_, _| Ok(twist), |_| ()) };
-    control::WaypointMove::with_speeds;
 }
