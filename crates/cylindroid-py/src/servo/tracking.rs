@@ -1,6 +1,6 @@
 //! Steps of a servo from the actuated joints of a closed chain.
 //!
-//! Checked  tests/test_servo.py
+//! Checked  tests/test_drives.py
 
 use std::collections::BTreeMap;
 

@@ -25,7 +25,7 @@ use super::levels::{Stack, TaskRows};
 use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
-use super::twist_commands::TwistCommand;
+use super::twist_command::TwistCommand;
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{
     BrakingState, Plant, Predictor, StallDetector, Status, acceleration_of, limits_of_loop_joints,

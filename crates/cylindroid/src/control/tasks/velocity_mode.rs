@@ -10,26 +10,11 @@
 
 use super::objective::TaskObjective;
 use super::task_servo::TaskServo;
+use super::twist_command::TwistCommand;
 use crate::control::servo::Target;
 use crate::error::{Error, Result};
 use crate::spatial::Twist;
 use crate::tolerance::MAX_MAGNITUDE;
-
-/// The twist that a task follows.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct TwistCommand {
-    twist: Twist,
-    timeout: f64,
-    /// Time for which it has been followed (s).
-    age: f64,
-}
-
-impl TwistCommand {
-    /// The twist of the next step.
-    pub(super) fn desired(&self) -> Twist {
-        if self.age > self.timeout * (1.0 + 1e-9) { Twist::ZERO } else { self.twist }
-    }
-}
 
 impl TaskServo {
     /// Lets the frame of the task of this name follow a twist (world axes, at its tool) from the next
