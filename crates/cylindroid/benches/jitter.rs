@@ -63,8 +63,11 @@ fn main() {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--deadlines" => {
-                let given = arguments.next().and_then(|n| n.parse::<u32>().ok());
-                seconds = Some(given.expect("--deadlines needs a number of seconds"));
+                seconds = arguments.next().and_then(|n| n.parse::<u32>().ok());
+                if seconds.is_none() {
+                    println!("--deadlines needs a number of seconds");
+                    return;
+                }
             }
             name => names.push(name.to_owned()),
         }
