@@ -86,6 +86,17 @@ static void closed_chain(void) {
     } while (step.status == CYL_MOVING && ++steps < 5000);
     EXPECT(step.status == CYL_REACHED);
     printf("stewart: reached after %d steps, %.1e m\n", steps, step.position_error);
+    double twist[6] = {0.0, 0.0, -0.02, 0.0, 0.0, 0.1};
+    CHECK(cyl_servo_reset(servo));
+    for (int k = 0; k < 2300 && (k < 300 || step.status != CYL_REACHED); k++) {
+        const double *command = k < 300 ? twist : NULL;
+        CHECK(cyl_servo_step_twist_actuated(servo, legs, drives, command, velocities, &step));
+        EXPECT(k >= 300 || step.status == CYL_MOVING);
+        for (size_t i = 0; i < drives; i++)
+            legs[i] += 1e-3 * velocities[cyl_actuated_index(stewart, i)];
+    }
+    EXPECT(step.status == CYL_REACHED && step.pose[14] < target[14] - 0.005);
+    EXPECT(cyl_servo_step_twist_actuated(servo, legs, 3, twist, velocities, &step) != CYL_OK);
     double open[2] = {1.0, 1.0};
     CHECK(cyl_servo_closure_error(servo, &open[0], &open[1]));
     EXPECT(open[0] < 1e-9 && open[1] < 1e-9);

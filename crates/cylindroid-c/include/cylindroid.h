@@ -332,6 +332,15 @@ enum cyl_status cyl_servo_step_twist(struct cyl_servo *servo,
                                      double *velocities,
                                      struct cyl_step *step);
 
+// cyl_servo_step_twist() of a closed chain whose drives alone are measured, as
+// cyl_servo_step_actuated() takes them.
+enum cyl_status cyl_servo_step_twist_actuated(struct cyl_servo *servo,
+                                              const double *actuated,
+                                              size_t count,
+                                              const double *command,
+                                              double *velocities,
+                                              struct cyl_step *step);
+
 // Resets a servo to rest.
 enum cyl_status cyl_servo_reset(struct cyl_servo *servo);
 

@@ -333,6 +333,12 @@ class Servo {
                                    velocities.sized(n_, "velocities"), &out));
         return out;
     }
+    cyl_step step_twist_actuated(Numbers actuated, const double *command, Out velocities) {
+        cyl_step out;
+        check(cyl_servo_step_twist_actuated(handle_.get(), actuated.data(), actuated.size(),
+                                            command, velocities.sized(n_, "velocities"), &out));
+        return out;
+    }
     void advance(Out q) const { check(cyl_servo_advance(handle_.get(), q.sized(n_, "q"), n_)); }
     void reset() { check(cyl_servo_reset(handle_.get())); }
     std::string stall() { return cyl_servo_stall(handle_.get()); }

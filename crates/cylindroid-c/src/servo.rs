@@ -120,6 +120,15 @@ const fn status_of(status: Status) -> cyl_servo_status {
     }
 }
 
+const fn status_of_twist(status: TwistStatus) -> cyl_servo_status {
+    match status {
+        TwistStatus::AtRest => cyl_servo_status::CYL_REACHED,
+        TwistStatus::Braking => cyl_servo_status::CYL_BRAKING,
+        TwistStatus::Following => cyl_servo_status::CYL_MOVING,
+        TwistStatus::Stalled => cyl_servo_status::CYL_STALLED,
+    }
+}
+
 /// The default options for a mechanism: 1 kHz, gains of 5/s, its tool or reference.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn cyl_servo_defaults(
@@ -295,14 +304,33 @@ pub unsafe extern "C" fn cyl_servo_step_twist(
         let (servo, q, command) =
             unsafe { (handle_mut("servo", servo)?, slice("q", q, n)?, twist("command", command)?) };
         let found = servo.inner.step_twist(q, command)?;
-        let status = match found.status {
-            TwistStatus::AtRest => cyl_servo_status::CYL_REACHED,
-            TwistStatus::Braking => cyl_servo_status::CYL_BRAKING,
-            TwistStatus::Following => cyl_servo_status::CYL_MOVING,
-            TwistStatus::Stalled => cyl_servo_status::CYL_STALLED,
-        };
+        let found = step_of(&found.step, status_of_twist(found.status));
         // SAFETY: as the header requires.
-        unsafe { write(&servo.inner, step_of(&found.step, status), velocities, step) }
+        unsafe { write(&servo.inner, found, velocities, step) }
+    })
+}
+
+/// cyl_servo_step_twist() of a closed chain whose drives alone are measured, as
+/// cyl_servo_step_actuated() takes them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cyl_servo_step_twist_actuated(
+    servo: *mut cyl_servo,
+    actuated: *const f64,
+    count: usize,
+    command: *const f64,
+    velocities: *mut f64,
+    step: *mut cyl_step,
+) -> cyl_status {
+    guard(|| {
+        // SAFETY: as the header requires.
+        let (servo, actuated) =
+            unsafe { (handle_mut("servo", servo)?, slice("actuated", actuated, count)?) };
+        // SAFETY: as the header requires.
+        let command = unsafe { twist("command", command) }?;
+        let found = servo.inner.step_twist_actuated(actuated, command)?;
+        let found = step_of(&found.step, status_of_twist(found.status));
+        // SAFETY: as the header requires.
+        unsafe { write(&servo.inner, found, velocities, step) }
     })
 }
 

@@ -223,6 +223,19 @@ def test_paths_and_moves():
         cy.WaypointMove(way, times=[0, 3, 5, 5.01])
     with pytest.raises(cy.InvalidOptionError, match="speeds follow from them"):
         cy.WaypointMove(way, times=[0, 3, 5, 7], speed=0.1)
+    with pytest.raises(cy.InvalidOptionError, match="speeds follow from them"):
+        cy.WaypointMove(way, times=[0, 3, 5, 7], speeds=[0.1, 0.1, 0.1])
+    # One speed for each segment; the bound of all counts only if it is given.
+    same = cy.WaypointMove(way, speeds=[0.1, 0.1, 0.1])
+    assert abs(same.duration - through.duration) < 1e-12
+    fast, slow = (cy.WaypointMove(way, speeds=[0.4, v, 0.4]).duration for v in (0.4, 0.02))
+    assert slow > fast + 2
+    bounded = cy.WaypointMove(way, speeds=[0.4, 0.4, 0.4], speed=0.1)
+    assert abs(bounded.duration - through.duration) < 1e-12
+    with pytest.raises(cy.DimensionError, match="speeds of the waypoints"):
+        cy.WaypointMove(way, speeds=[0.1, 0.1])
+    with pytest.raises(cy.InvalidOptionError, match="0 m/s from waypoint 1 to 2"):
+        cy.WaypointMove(way, speeds=[0.1, 0, 0.1])
     assert np.isfinite(cy.WaypointMove(way, times=[0, 1e300, 2e300, 3e300]).duration)
     free = cy.WaypointMove(way, speed=np.inf).duration
     assert abs(free / cy.WaypointMove(way, speed=1e300).duration - 1) < 0.2
@@ -397,48 +410,6 @@ def test_a_twist_is_followed_until_the_commands_cease():
         c.step_twist(q, out)
         q = c.advance(q)
     assert c.status == "stalled" and c.stall.name == "singular"
-
-
-def test_parallel_robots_are_driven_from_their_actuated_joints():
-    stewart = cy.load("stewart")
-    legs = [i for i, name in enumerate(stewart.joint_names) if name.startswith("leg")]
-    servo = cy.Servo(stewart, dt=0.002, acceleration=5.0)
-    servo.start_from(stewart.home)
-    target = stewart.fk(stewart.home, servo.frame)
-    target[:3, 3] += [0.02, -0.01, 0.03]
-    measured = stewart.home[legs].copy()
-    noise = np.random.default_rng(0)
-    for _ in range(2000):
-        velocities = servo.step_actuated(measured + 1e-6 * noise.standard_normal(6), target)
-        measured += 0.002 * velocities[legs]
-    here = stewart.fk(servo.configuration, servo.frame)
-    assert np.linalg.norm(here[:3, 3] - target[:3, 3]) < 1e-4
-    with pytest.raises(cy.DimensionError, match="actuated"):
-        servo.step_actuated(measured[:3], target)
-    assert servo.closure_error.distance < 1e-9 and servo.closure_error.angle < 1e-9
-    assert cy.Servo(cy.load("panda")).closure_error is None
-    with pytest.raises(cy.InvalidOptionError, match="actuated positions = 'leg.*loops open by"):
-        servo.step_actuated(measured + [0.9, -0.9, 0.9, -0.9, 0.9, -0.9], target)
-
-
-def test_passive_joints_that_are_measured_too_count():
-    five_bar = cy.load("five-bar")
-    q = five_bar.home.copy()
-    servo = cy.Servo(five_bar, dt=0.002, acceleration=5.0)
-    servo.start_from(q)
-    actuated = [i for i, name in enumerate(five_bar.joint_names) if name in five_bar.actuated]
-    passive = [name for name in five_bar.joint_names if name not in five_bar.actuated]
-    target = five_bar.fk(q, servo.frame)
-    servo.step_actuated(q[actuated], target)
-    alone = servo.configuration
-    place = five_bar.joint_names.index(passive[0])
-    servo.step_actuated(q[actuated], target, sensors={passive[0]: q[place] + 1e-3})
-    assert 1e-5 < servo.configuration[place] - alone[place] < 1e-3
-    with pytest.raises(cy.UnknownNameError, match=passive[0]):
-        servo.step_actuated(q[actuated], target, sensors={passive[0] + "x": 0.0})
-    driven = five_bar.joint_names[actuated[0]]
-    with pytest.raises(cy.InvalidOptionError, match=f"sensors = '{driven}'.* it is actuated"):
-        servo.step_actuated(q[actuated], target, sensors={driven: 0.0})
 
 
 def test_a_servo_that_lags_keeps_limits():

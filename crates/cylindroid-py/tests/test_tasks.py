@@ -421,6 +421,35 @@ def test_no_tasks_are_rest():
     assert servo.status is None
 
 
+def test_a_frame_follows_a_twist_beside_other_tasks():
+    left, right = moved("left6", [0, 0, 0]), moved("right6", [0, 0, 0])
+    tasks = [cy.FrameTask("right6", right), cy.FrameTask("left6", left, level=1)]
+    servo = cy.TaskServo(ROBOT, tasks, dt=0.002)
+    twist, q = np.array([0.02, -0.01, 0.03, 0.0, 0.05, 0.1]), BENT
+    assert servo.commanded_twist("left6") is None
+    for _ in range(200):
+        servo.command_twist("left6", twist, timeout=0.05)
+        servo.step(q)
+        q = servo.advance(q)
+    assert servo.status == "moving"
+    np.testing.assert_array_equal(servo.commanded_twist("left6"), twist)
+    way = ROBOT.fk(q, frame="left6")[:3, 3] - left[:3, 3] - 0.4 * twist[:3]
+    assert np.linalg.norm(way) < 1e-3
+    assert np.linalg.norm(ROBOT.fk(q, frame="right6") - right) < 1e-5
+    for _ in range(200):
+        velocities = servo.step(q)
+        q = servo.advance(q)
+    assert servo.status == "reached" and np.abs(velocities).max() < 1e-6
+    assert not servo.commanded_twist("left6").any()
+    servo.command_twist("left6", twist)
+    servo.reset()
+    assert servo.commanded_twist("left6") is None
+    with pytest.raises(cy.UnknownNameError, match="left6"):
+        servo.command_twist("left5", twist)
+    with pytest.raises(cy.InvalidOptionError, match="timeout"):
+        servo.command_twist("left6", twist, timeout=0)
+
+
 def test_attributes_of_tasks():
     task = cy.FrameTask("left6", np.eye(4), name="hand", level=2, weight=3.0, gain=4.0)
     assert isinstance(task, cy.MotionTask)

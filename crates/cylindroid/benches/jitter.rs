@@ -1,4 +1,5 @@
-//! Times of single servo steps: `cargo bench -p cylindroid --bench jitter [-- NAMES]`.
+//! Times of single servo steps: `cargo bench -p cylindroid --bench jitter [-- NAMES]`, and of the loop with
+//! deadlines: `cargo bench -p cylindroid --bench jitter -- --deadlines SECONDS [NAMES]`.
 //!
 //! Each step is timed separately and acts on the configuration after the one before: the servo of one
 //! frame on a circle through the middle of its workspace, with the default secondary tasks, as in
@@ -6,11 +7,15 @@
 //! reaches its limit; on a circle beyond its reach, where limits bound every step; servos of many
 //! tasks, among obstacles, of a humanoid and of closed chains. Interruptions by other programs or the
 //! kernel show in the largest times.
+//!
+//! With deadlines each servo runs at 1 kHz for so many seconds, woken up at absolute times, with
+//! SCHED_FIFO and locked memory where the system grants them: latency of waking up, time of the step,
+//! and how many commands came later than a period, as in examples/05_real_time_loop.rs.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use cylindroid::closure::assemble;
 use cylindroid::collision::{CollisionModel, CollisionOptions};
@@ -24,35 +29,66 @@ use cylindroid::model::{
 use cylindroid::spatial::Mat3;
 use cylindroid::{Mechanism, Pose, Rotation, Servo, ServoOptions, Vec3, catalogue};
 
+#[path = "../examples/real_time/mod.rs"]
+mod real_time;
+
 /// Steps of a round.
 const ROUND: f64 = 4_000.0;
 
-/// What runs, its number of steps, and the run: it times each step.
-type Scenario = (&'static str, usize, fn(usize) -> Vec<u128>);
+/// Takes the step of this number, and returns its time.
+type Stepper = Box<dyn FnMut(usize) -> Duration>;
+
+/// What runs, its number of steps, and the steps.
+type Scenario = (&'static str, usize, fn() -> Stepper);
 
 const SCENARIOS: [Scenario; 12] = [
-    ("panda, away from limits", 1_000_000, |steps| circle("panda", true, 0.1, steps)),
-    ("panda", 1_000_000, |steps| circle("panda", false, 0.1, steps)),
-    ("ur5e", 1_000_000, |steps| circle("ur5e", false, 0.1, steps)),
-    ("panda, out of reach", 200_000, |steps| circle("panda", true, 1.2, steps)),
-    ("panda, many tasks", 200_000, |steps| panda_of_tasks(0, steps)),
-    ("panda, 2 obstacles", 200_000, |steps| panda_of_tasks(2, steps)),
+    ("panda, away from limits", 1_000_000, || circle("panda", true, 0.1)),
+    ("panda", 1_000_000, || circle("panda", false, 0.1)),
+    ("ur5e", 1_000_000, || circle("ur5e", false, 0.1)),
+    ("panda, out of reach", 200_000, || circle("panda", true, 1.2)),
+    ("panda, many tasks", 200_000, || panda_of_tasks(0)),
+    ("panda, 2 obstacles", 200_000, || panda_of_tasks(2)),
     ("panda, 500 pairs", 50_000, panda_of_spheres),
-    ("humanoid", 50_000, |steps| humanoid(true, steps)),
-    ("humanoid, one level", 50_000, |steps| humanoid(false, steps)),
+    ("humanoid", 50_000, || humanoid(true)),
+    ("humanoid, one level", 50_000, || humanoid(false)),
     ("stewart, many tasks", 100_000, stewart_of_tasks),
-    ("stewart", 100_000, |steps| object("stewart", steps)),
-    ("32 loops", 2_000, |steps| object("", steps)),
+    ("stewart", 100_000, || object("stewart")),
+    ("32 loops", 2_000, || object("")),
 ];
 
 fn main() {
-    let names: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
-    println!("us a servo step    steps   median   99.9 %  largest");
-    for (name, steps, run) in SCENARIOS {
-        if !names.is_empty() && !names.iter().any(|n| name.contains(n.as_str())) {
-            continue;
+    // Cargo passes `--bench`.
+    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
+    let (mut names, mut seconds) = (Vec::new(), None);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--deadlines" => {
+                seconds = arguments.next().and_then(|n| n.parse::<u32>().ok());
+                if seconds.is_none() {
+                    println!("--deadlines needs a number of seconds");
+                    return;
+                }
+            }
+            name => names.push(name.to_owned()),
         }
-        let mut times = run(steps);
+    }
+    let is_named = |name: &str| names.is_empty() || names.iter().any(|n| name.contains(n.as_str()));
+    let chosen = SCENARIOS.iter().filter(|(name, ..)| is_named(name));
+    if let Some(seconds) = seconds {
+        real_time::become_real_time();
+        for (name, _, prepare) in chosen {
+            println!("\n{name}, {seconds} s at 1 kHz");
+            let mut step = prepare();
+            let cycle = |cycle| Ok::<_, std::convert::Infallible>(step(cycle));
+            let cycles = seconds as usize * 1000;
+            real_time::at_deadlines(Duration::from_millis(1), cycles, cycle).unwrap().print();
+        }
+        return;
+    }
+    println!("us a servo step    steps   median   99.9 %  largest");
+    for (name, steps, prepare) in chosen {
+        let mut step = prepare();
+        let mut times: Vec<u128> = (0..*steps).map(|i| step(i).as_nanos()).collect();
         times.sort_unstable();
         let at = |place: usize| times[place] as f64 * 1e-3;
         let (median, most) = (at(steps / 2), at(steps - 1));
@@ -67,7 +103,7 @@ fn around(start: Pose, radius: f64, step: usize) -> Pose {
     Pose { translation: start.translation + way, ..start }
 }
 
-fn circle(name: &str, besides: bool, radius: f64, steps: usize) -> Vec<u128> {
+fn circle(name: &str, besides: bool, radius: f64) -> Stepper {
     let robot = catalogue::load(name).unwrap();
     let mut options = ServoOptions::new(&robot);
     if besides {
@@ -76,20 +112,18 @@ fn circle(name: &str, besides: bool, radius: f64, steps: usize) -> Vec<u128> {
     let mut servo = Servo::new(&robot, options).unwrap();
     let start = robot.state(robot.home()).unwrap().pose(robot.tool()).unwrap();
     let mut q = robot.home().to_vec();
-    (0..steps)
-        .map(|step| {
-            let target = around(start, radius, step);
-            let began = Instant::now();
-            servo.step(&q, target).unwrap();
-            let time = began.elapsed().as_nanos();
-            servo.advance(&mut q);
-            time
-        })
-        .collect()
+    Box::new(move |step| {
+        let target = around(start, radius, step);
+        let began = Instant::now();
+        servo.step(&q, target).unwrap();
+        let time = began.elapsed();
+        servo.advance(&mut q);
+        time
+    })
 }
 
 /// The object of a closed chain from side to side; of a chain of loops without a name.
-fn object(name: &str, steps: usize) -> Vec<u128> {
+fn object(name: &str) -> Stepper {
     let mechanism = match name {
         "" => chain_of_loops(32),
         _ => catalogue::load(name).unwrap(),
@@ -98,17 +132,15 @@ fn object(name: &str, steps: usize) -> Vec<u128> {
     let mut q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
     let end_effector = servo.options().end_effector;
     let start = mechanism.state(&q).unwrap().pose(end_effector).unwrap();
-    (0..steps)
-        .map(|step| {
-            let way = Vec3::X * (0.02 * (step as f64 / 500.0 * TAU).sin());
-            let target = Pose { translation: start.translation + way, ..start };
-            let began = Instant::now();
-            servo.step(&q, target).unwrap();
-            let time = began.elapsed().as_nanos();
-            servo.advance(&mut q);
-            time
-        })
-        .collect()
+    Box::new(move |step| {
+        let way = Vec3::X * (0.02 * (step as f64 / 500.0 * TAU).sin());
+        let target = Pose { translation: start.translation + way, ..start };
+        let began = Instant::now();
+        servo.step(&q, target).unwrap();
+        let time = began.elapsed();
+        servo.advance(&mut q);
+        time
+    })
 }
 
 /// Parallelograms in series: each turns by its own actuated joint.
@@ -142,24 +174,22 @@ fn frame(robot: &Mechanism, name: &str, components: Task, q: &[f64]) -> MotionTa
     MotionTask::new(name, objective)
 }
 
-/// Times the steps of a servo whose first task goes round.
-fn run(mut servo: TaskServo, mut q: Vec<f64>, radius: f64, steps: usize) -> Vec<u128> {
+/// Steps of a servo whose first task goes round.
+fn run(mut servo: TaskServo, mut q: Vec<f64>, radius: f64) -> Stepper {
     let name = servo.tasks()[0].name.clone();
     let TaskObjective::Frame { target: start, .. } = servo.tasks()[0].objective else {
         unreachable!("the first task is that of a frame")
     };
-    (0..steps)
-        .map(|step| {
-            if let Ok(TaskObjective::Frame { target, .. }) = servo.objective_mut(&name) {
-                *target = around(start.pose, radius, step).into();
-            }
-            let began = Instant::now();
-            servo.step(&q).unwrap();
-            let time = began.elapsed().as_nanos();
-            servo.advance(&mut q);
-            time
-        })
-        .collect()
+    Box::new(move |step| {
+        if let Ok(TaskObjective::Frame { target, .. }) = servo.objective_mut(&name) {
+            *target = around(start.pose, radius, step).into();
+        }
+        let began = Instant::now();
+        servo.step(&q).unwrap();
+        let time = began.elapsed();
+        servo.advance(&mut q);
+        time
+    })
 }
 
 /// A panda with spheres on each of its eight links.
@@ -202,24 +232,24 @@ fn avoidance(robot: &Mechanism, obstacles: usize, margin: f64) -> CollisionAvoid
     CollisionAvoidance { model, gap: 0.01, margin }
 }
 
-fn panda_of_tasks(obstacles: usize, steps: usize) -> Vec<u128> {
+fn panda_of_tasks(obstacles: usize) -> Stepper {
     let robot = with_spheres(1);
     let q = catalogue::load("panda").unwrap().home().to_vec();
     let posture = MotionTask::new("posture", TaskObjective::Posture { q: q.clone() });
     let tasks = vec![frame(&robot, "hand_tcp", Task::POSE, &q), posture];
     let mut options = TaskServoOptions::new(&robot);
     options.collisions = (obstacles > 0).then(|| avoidance(&robot, obstacles, 0.3));
-    run(TaskServo::new(&robot, tasks, options).unwrap(), q, 0.1, steps)
+    run(TaskServo::new(&robot, tasks, options).unwrap(), q, 0.1)
 }
 
-fn panda_of_spheres(steps: usize) -> Vec<u128> {
+fn panda_of_spheres() -> Stepper {
     let robot = with_spheres(4);
     let q = catalogue::load("panda").unwrap().home().to_vec();
     let posture = MotionTask::new("posture", TaskObjective::Posture { q: q.clone() });
     let tasks = vec![frame(&robot, "hand_tcp", Task::POSE, &q), posture];
     let mut options = TaskServoOptions::new(&robot);
     options.collisions = Some(avoidance(&robot, 6, 2.0));
-    run(TaskServo::new(&robot, tasks, options).unwrap(), q, 0.1, steps)
+    run(TaskServo::new(&robot, tasks, options).unwrap(), q, 0.1)
 }
 
 /// A free body with legs of six joints, a waist of three and arms of seven: 35 coordinates, as a G1.
@@ -270,7 +300,7 @@ fn walker() -> Mechanism {
 
 /// Hands and feet at poses, the centre of mass above the feet, a posture; the hands below the feet, or
 /// all but the posture on one level.
-fn humanoid(by_levels: bool, steps: usize) -> Vec<u128> {
+fn humanoid(by_levels: bool) -> Stepper {
     let robot = walker();
     let bend = |i: usize| if i < 6 { 0.0 } else { 0.4 * f64::from(1 - 2 * (i as i32 % 2)) };
     let q: Vec<f64> = (0..robot.n()).map(bend).collect();
@@ -286,12 +316,12 @@ fn humanoid(by_levels: bool, steps: usize) -> Vec<u128> {
         TaskObjective::CenterOfMass { axes: [true, true, false], target, velocity: Vec3::ZERO };
     tasks.push(MotionTask::new("center", objective));
     tasks.push(MotionTask::new("posture", TaskObjective::Posture { q: q.clone() }));
-    run(TaskServo::new(&robot, tasks, TaskServoOptions::new(&robot)).unwrap(), q, 0.03, steps)
+    run(TaskServo::new(&robot, tasks, TaskServoOptions::new(&robot)).unwrap(), q, 0.03)
 }
 
-fn stewart_of_tasks(steps: usize) -> Vec<u128> {
+fn stewart_of_tasks() -> Stepper {
     let robot = catalogue::load("stewart").unwrap();
     let q = assemble(&robot, robot.home(), &[]).unwrap().q;
     let tasks = vec![frame(&robot, "platform", Task::POSE, &q)];
-    run(TaskServo::new(&robot, tasks, TaskServoOptions::new(&robot)).unwrap(), q, 0.02, steps)
+    run(TaskServo::new(&robot, tasks, TaskServoOptions::new(&robot)).unwrap(), q, 0.02)
 }

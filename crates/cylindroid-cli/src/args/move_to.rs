@@ -191,8 +191,9 @@ pub(crate) struct PathArgs {
 
     /// Move through the poses of a file without stopping, from the start to the last one: rows
     /// `x,y,z` or `x,y,z,qw,qx,qy,qz` [m], with a time [s] before them if they have one. A header
-    /// may name the columns, in any order: `time` (or `t`), `x`, `y`, `z`, and `qw`, `qx`, `qy`,
-    /// `qz` or `roll`, `pitch`, `yaw` [rad]
+    /// may name the columns, in any order: `x`, `y`, `z`, and `qw`, `qx`, `qy`, `qz` or `roll`,
+    /// `pitch`, `yaw` [rad], and `time` (or `t`) or `speed` [m/s], the largest on the way to the row,
+    /// which --speed bounds only if it is given
     #[arg(long, value_name = "FILE.csv")]
     #[arg(conflicts_with_all = ["to", "orientation", "line", "via", "joint_to"])]
     pub(crate) waypoints: Option<PathBuf>,

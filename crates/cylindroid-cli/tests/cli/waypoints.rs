@@ -50,6 +50,10 @@ fn bad_rows_are_named_with_their_column() {
         ("0.4,0.1,0.5,1,0,0", "line 1 has 6 numbers; rows have 3"),
         ("0.4;0.1;0.5\n0.4;0.1;0.5", "line 2, column 1: '0.4;0.1;0.5' is not a number"),
         ("x,y,z\n", "no rows"),
+        ("x,y,z,speed\n0.4,0.1,0.5,0.1\n0.4,0,0.5,0", "line 3, column 4 (speed): 0 m/s must be"),
+        ("speed,x,y,z\n-0.2,0.4,0.1,0.5", "line 2, column 1 (speed): -0.2 m/s must be positive"),
+        ("x,y,z,speed\n0.4,0.1,0.5,inf", "line 2, column 4 (speed): inf is not finite"),
+        ("x,y,z,speed\n0.4,0.1,0.5", "line 2 has 3 numbers; the header names 4 (x,y,z,speed)"),
         ("0.001,0.4,0.1,0.5", "times of the waypoints 0 s to 0.001 s: it is too short"),
     ] {
         let error = refused_file(text, &[]);
@@ -80,8 +84,10 @@ fn headers_are_obeyed_or_refused() {
         assert!(crate::difference(&a, &b) < 1e-5, "{text}: {a:?} {b:?}");
     }
     for (header, expected) in [
-        ("x,y,z,speed", "header, column 4: 'speed' is none of time, x, y, z, qw,"),
-        ("x,y,z,speed", "--speed is that of all waypoints, or give each a time"),
+        ("x,y,z,speeds", "header, column 4: 'speeds' is none of time, x, y, z, qw,"),
+        ("x,y,z,speeds", "'speed' is that on the way to a row"),
+        ("t,x,y,z,speed", "header: give time or speed, not both"),
+        ("x,y,z,speed,Speed", "header, column 5: 'speed' is given twice"),
         ("x,y,,z", "header, column 3: '' is none of"),
         ("x,y,z,X", "header, column 4: 'x' is given twice"),
         ("x,z,time,qw", "header: y is missing beside others of x, y, z"),
@@ -102,6 +108,21 @@ fn speeds_of_waypoints() {
     assert!((fast / bounded - 1.0).abs() < 0.3 && fast > 0.5, "{fast} {bounded}");
     let error = refused_file("1,0.3,0.2,0.5\n2,0.3,-0.2,0.5", &["--speed", "0.05"]);
     assert!(error.contains("--speed has no effect on --waypoints with times"), "{error}");
+}
+
+/// The speed of a row is that on the way to it; --speed bounds all if it is given.
+#[test]
+fn rows_have_speeds() {
+    let rows = |first: &str, second: &str| {
+        format!("x,y,z,speed\n0.3,0.2,0.5,{first}\n0.3,-0.2,0.5,{second}")
+    };
+    // 0.4 m at 0.05 instead of 0.4 m/s takes 7 s longer, give or take the ramps.
+    let fast = duration(&reached(&rows("0.4", "0.4"), &[]));
+    let slow = duration(&reached(&rows("0.4", "0.05"), &[]));
+    assert!((slow - fast - 7.0).abs() < 0.5, "{fast} {slow}");
+    let capped = duration(&reached(&rows("0.4", "0.4"), &["--speed", "0.1"]));
+    let same = duration(&reached("0.3,0.2,0.5\n0.3,-0.2,0.5", &["--speed", "0.1"]));
+    assert!((capped - same).abs() < 1e-9, "{capped} {same}");
 }
 
 /// No motion uses them: each names what it needs.

@@ -20,7 +20,10 @@ use crate::table;
 /// speed, acceleration : float or (float, float), optional
 ///     Bounds of translation and rotation [m/s, rad/s; m/s^2, rad/s^2]; a single number bounds
 ///     translations. Defaults: (0.25, 1), (1, 4). With `times`, speeds follow from them, and
-///     `speed` is refused.
+///     `speed` is refused; with `speeds`, it bounds translations only if it is given.
+/// speeds : array_like, (N - 1,), optional
+///     Largest speed of the translation between each waypoint and the next (m/s). Where only the
+///     orientation changes, `speed` bounds the rotation.
 ///
 /// Attributes
 /// ----------
@@ -33,7 +36,7 @@ use crate::table;
 /// ------
 /// InvalidOptionError
 ///     For fewer than two poses, times that do not increase or are too short, both times and a
-///     speed, and bounds that are not positive.
+///     speed or speeds, and speeds and bounds that are not positive.
 /// DimensionError, NotFiniteError
 ///
 /// Notes
@@ -48,24 +51,33 @@ pub(crate) struct PyWaypointMove {
 #[pymethods]
 impl PyWaypointMove {
     #[new]
-    #[pyo3(signature = (poses, times = None, speed = None, acceleration = None))]
+    #[pyo3(signature = (poses, times = None, speed = None, acceleration = None, speeds = None))]
     fn new(
         poses: Numbers<'_>,
         times: Option<Numbers<'_>>,
         speed: Option<Numbers<'_>>,
         acceleration: Option<Numbers<'_>>,
+        speeds: Option<Numbers<'_>>,
     ) -> Result<Self> {
-        let (linear, angular) = bounds([&speed, &acceleration, &None], false)?;
+        let (mut linear, angular) = bounds([&speed, &acceleration, &None], false)?;
+        if speeds.is_some() && speed.is_none() {
+            linear.velocity = f64::INFINITY;
+        }
         let bounds = CartesianBounds { linear, angular };
-        if let (Some(_), Some(speed)) = (&times, &speed) {
-            let values: Vec<String> = speed.values().iter().map(f64::to_string).collect();
+        let given = [("speed", &speed), ("speeds", &speeds)];
+        let given = given.into_iter().find_map(|(name, values)| Some((name, values.as_ref()?)));
+        if let (Some(_), Some((name, values))) = (&times, given) {
+            let values: Vec<String> = values.values().iter().map(f64::to_string).collect();
             let reason = "with times, speeds follow from them; leave one of the two out";
-            return Err(Failure::option("speed", values.join(", "), reason));
+            return Err(Failure::option(name, values.join(", "), reason));
         }
         let poses = poses.poses("poses")?;
-        let inner = match &times {
-            None => WaypointMove::new(&poses, bounds)?,
-            Some(times) => WaypointMove::timed(&poses, times.vector("times")?, bounds)?,
+        let inner = match (&times, &speeds) {
+            (Some(times), _) => WaypointMove::timed(&poses, times.vector("times")?, bounds)?,
+            (None, Some(speeds)) => {
+                WaypointMove::with_speeds(&poses, speeds.vector("speeds")?, bounds)?
+            }
+            (None, None) => WaypointMove::new(&poses, bounds)?,
         };
         Ok(Self { inner })
     }

@@ -1,11 +1,11 @@
 //! Steps of a servo from the actuated joints of a closed chain.
 //!
-//! Checked  tests/test_servo.py
+//! Checked  tests/test_drives.py
 
 use std::collections::BTreeMap;
 
-use cylindroid::Error;
 use cylindroid::closure::ClosedChain;
+use cylindroid::{Error, Mechanism};
 use pyo3::prelude::*;
 
 use super::{PyServo, moving_target};
@@ -13,6 +13,19 @@ use crate::arrays::{self, Array, Numbers};
 use crate::closed::PyLoopClosureError;
 use crate::coordinates::Coordinates;
 use crate::error::{Result, argument};
+
+/// Sensors by the index of their coordinate.
+fn places(
+    sensors: Option<BTreeMap<String, f64>>,
+    mechanism: &Mechanism,
+) -> Result<Vec<(usize, f64)>> {
+    let names = || mechanism.coordinates().iter().map(|c| c.name.as_str());
+    let sensors = sensors.unwrap_or_default().into_iter().map(|(name, position)| {
+        let place = names().position(|n| n == name);
+        Ok((place.ok_or_else(|| Error::unknown("joint", &name, names()))?, position))
+    });
+    sensors.collect()
+}
 
 #[pymethods]
 impl PyServo {
@@ -69,15 +82,50 @@ impl PyServo {
     ) -> Result<Array<'py>> {
         let target = moving_target(&target, feed_forward.as_ref())?;
         let running = &mut *self.lock()?;
-        let coordinates = running.servo.mechanism().coordinates();
-        let names = || coordinates.iter().map(|c| c.name.as_str());
-        let sensors = sensors.unwrap_or_default().into_iter().map(|(name, position)| {
-            let place = names().position(|n| n == name);
-            Ok((place.ok_or_else(|| Error::unknown("joint", &name, names()))?, position))
-        });
-        let sensors = sensors.collect::<Result<Vec<_>>>()?;
+        let sensors = places(sensors, running.servo.mechanism())?;
         let actuated = actuated.vector("actuated")?;
         running.last = Some(running.servo.step_measured(actuated, &sensors, target)?);
+        running.twist = None;
+        Ok(arrays::vector(py, running.servo.joint_velocities()))
+    }
+
+    /// One step of velocity mode from the positions of the actuated joints alone: `step_twist` for
+    /// parallel robots, which measure no others.
+    ///
+    /// Parameters
+    /// ----------
+    /// actuated : array_like, (number of actuated joints,)
+    ///     Measured positions, in the order of `joint_names`
+    ///     [rad or m].
+    /// twist : array_like, (6,), optional
+    ///     The command that arrived since the last step, linear first, world axes, at the tool [m/s,
+    ///     rad/s]. None: no command arrived.
+    /// sensors : dict of str to float, optional
+    ///     Positions of passive joints that are measured too, by name, as for `step_actuated`.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (n,)
+    ///     Joint velocities [rad/s or m/s].
+    ///
+    /// Raises
+    /// ------
+    /// DimensionError, NotFiniteError, InvalidOptionError, UnknownNameError
+    ///     As `step_actuated`. The state of the servo is unchanged: the command is not taken.
+    #[pyo3(signature = (actuated, twist = None, sensors = None))]
+    fn step_twist_actuated<'py>(
+        &self,
+        py: Python<'py>,
+        actuated: Numbers<'py>,
+        twist: Option<Numbers<'py>>,
+        #[pyo3(from_py_with = argument)] sensors: Option<BTreeMap<String, f64>>,
+    ) -> Result<Array<'py>> {
+        let twist = twist.as_ref().map(|twist| twist.twist("twist")).transpose()?;
+        let running = &mut *self.lock()?;
+        let sensors = places(sensors, running.servo.mechanism())?;
+        let actuated = actuated.vector("actuated")?;
+        let step = running.servo.step_twist_measured(actuated, &sensors, twist)?;
+        (running.last, running.twist) = (Some(step.step), Some(step));
         Ok(arrays::vector(py, running.servo.joint_velocities()))
     }
 
@@ -99,7 +147,7 @@ impl PyServo {
         let running = &mut *self.lock()?;
         let q = q.vector(running.servo.mechanism(), "q")?;
         running.servo.start_from(q)?;
-        running.last = None;
+        (running.last, running.twist) = (None, None);
         Ok(())
     }
 

@@ -325,6 +325,61 @@ impl PyTaskServo {
         Ok(arrays::vector(py, &next))
     }
 
+    /// Lets the frame of a task follow a twist from the next step on, instead of its target; the other
+    /// tasks go on. Without a new command it holds for `timeout`, then the frame comes to rest: a lost
+    /// connection stops it. A target for the task in `step` ends it, `reset` that of all tasks.
+    ///
+    /// Parameters
+    /// ----------
+    /// task : str
+    ///     The name of a `FrameTask`.
+    /// twist : array_like, (6,)
+    ///     Linear first, world axes, at the tool of the task [m/s, rad/s].
+    /// timeout : float, optional
+    ///     Time for which the command holds (s); infinite: always. Default: 0.1.
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError, DimensionError, NotFiniteError
+    /// InvalidOptionError
+    ///     For a task of another class, and a timeout that is not positive.
+    #[pyo3(signature = (task, twist, timeout = 0.1))]
+    fn command_twist(
+        &self,
+        #[pyo3(from_py_with = argument)] task: &str,
+        twist: Numbers<'_>,
+        #[pyo3(from_py_with = argument)] timeout: f64,
+    ) -> Result<()> {
+        let twist = twist.twist("twist")?;
+        Ok(self.lock()?.servo.command_twist(task, twist, timeout)?)
+    }
+
+    /// The twist that the next step of a task follows.
+    ///
+    /// Parameters
+    /// ----------
+    /// task : str
+    ///     The name of a task.
+    ///
+    /// Returns
+    /// -------
+    /// ndarray, (6,), or None
+    ///     Linear first, world axes, at the tool [m/s, rad/s]: zero after the timeout, None without a
+    ///     command.
+    ///
+    /// Raises
+    /// ------
+    /// UnknownNameError
+    #[pyo3(signature = (task))]
+    fn commanded_twist<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = argument)] task: &str,
+    ) -> Result<Option<Array<'py>>> {
+        let twist = self.lock()?.servo.commanded_twist(task)?;
+        Ok(twist.map(|twist| arrays::vector(py, &twist.to_array())))
+    }
+
     /// Resets the servo: joints at rest; targets stay.
     fn reset(&self) -> Result<()> {
         let running = &mut *self.lock()?;

@@ -182,6 +182,7 @@ fn robots_that_lag_allocate_nothing() {
     let counted = count(|| {
         for _ in 0..100 {
             servo.step_measured(&actuated, &sensors, pose).unwrap();
+            servo.step_twist_measured(&actuated, &sensors, Some(twist)).unwrap();
         }
     });
     assert_eq!(counted, 0);
@@ -224,6 +225,16 @@ fn closed_chains_allocate_nothing() {
                         _ => servo.step_actuated(&actuated, target).unwrap(),
                     };
                     scaled += usize::from(step.saturation.scale < 1.0);
+                });
+                servo.advance(&mut q);
+            }
+            let linear = along * (0.02 * mechanism.reach());
+            let twist = Twist { linear, angular: Vec3::ZERO };
+            for round in 0..100 {
+                let actuated: Vec<f64> = mechanism.actuated().map(|i| q[i]).collect();
+                let command = (round < 50 && round % 10 == 0).then_some(twist);
+                counted += count(|| {
+                    servo.step_twist_actuated(&actuated, command).unwrap();
                 });
                 servo.advance(&mut q);
             }

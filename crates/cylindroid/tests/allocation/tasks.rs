@@ -7,7 +7,7 @@ use cylindroid::control::{
     TaskServoOptions,
 };
 use cylindroid::model::{Geometry, JointSpec, Link, Visual};
-use cylindroid::{Mechanism, Pose, Vec3, catalogue};
+use cylindroid::{Mechanism, Pose, Twist, Vec3, catalogue};
 
 use super::{count, frame};
 
@@ -85,6 +85,18 @@ fn escapes_of_tasks_allocate_nothing() {
     });
     assert_eq!(counted, 0);
     assert!(servo.reports()[0].position_error < 1e-3, "{:?}", servo.reports());
+    // Along a twist.
+    let twist = Twist { linear: Vec3::Y * 0.1, angular: Vec3::ZERO };
+    let counted = count(|| {
+        for round in 0..200 {
+            if round < 100 {
+                servo.command_twist("hand", twist, 0.1).unwrap();
+            }
+            servo.step(&q).unwrap();
+            servo.advance(&mut q);
+        }
+    });
+    assert_eq!(counted, 0);
 }
 
 /// Many tasks of every closed chain, with a half-space: away from type II singularities.

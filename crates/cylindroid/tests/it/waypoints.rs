@@ -68,23 +68,19 @@ fn huge_times_and_distances_are_moves_or_errors() {
     assert!(error.contains("orders of magnitude"), "{error}");
 }
 
-/// Waypoints far denser than the way of a ramp are refused, in less than a second, with a place.
+/// Waypoints far denser than the way of a ramp are no obstacle, in less than a second.
 #[test]
-fn crowded_waypoints_are_named() {
+fn crowded_waypoints_are_followed() {
     let circle = |count: u32| {
         let at = |i| f64::from(i) * std::f64::consts::TAU / f64::from(count);
         let pose = |i| Pose::from_translation(Vec3::new(at(i).cos(), at(i).sin(), 0.0) * 0.05);
-        (0..count).map(pose).collect::<Vec<_>>()
+        let poses: Vec<Pose> = (0..count).map(pose).collect();
+        let motion = WaypointMove::new(&poses, bounds(0.25, 1.0)).unwrap();
+        assert_eq!(motion.at(f64::INFINITY).0, poses[poses.len() - 1]);
+        motion.duration()
     };
-    assert!(WaypointMove::new(&circle(200), bounds(0.25, 1.0)).unwrap().duration() < 12.0);
-    let error = WaypointMove::new(&circle(500_000), bounds(0.25, 1.0)).unwrap_err().to_string();
-    let place: usize = error
-        .split_once("waypoints = ")
-        .and_then(|(_, rest)| rest.split_once(" and "))
-        .and_then(|(place, _)| place.parse().ok())
-        .unwrap();
-    assert!((1..500_000).contains(&place), "{error}");
-    assert!(error.contains("(0 is the start)") && error.contains(" m apart"), "{error}");
+    let [few, many] = [circle(200), circle(500_000)];
+    assert!(few < 1.8 && (many / few - 1.0).abs() < 0.01, "{few} {many}");
 }
 
 /// Steps below the tolerance add up: the move follows them, and ends where they end.

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // in the helpers too, not only in the tests
 
+mod dense_waypoints;
 mod laws;
 mod moves;
 mod paths;

@@ -70,6 +70,56 @@ fn speeds_and_accelerations_stay_within_their_bounds() {
     assert_eq!(WaypointMove::new(&twice, BOUNDS).unwrap(), motion);
 }
 
+/// Each segment has its own speed; where they are equal, that of the bounds.
+#[test]
+fn segments_have_speeds_of_their_own() {
+    let poses = poses();
+    let free = KinematicBounds { velocity: f64::INFINITY, ..BOUNDS.linear };
+    let free = CartesianBounds { linear: free, ..BOUNDS };
+    let speeds = [0.3, 0.1, 0.5, 0.2];
+    let motion = WaypointMove::with_speeds(&poses, &speeds, free).unwrap();
+    check(&motion, BOUNDS);
+    // A segment is run at its speed, or slower where it rotates or blends; blends lie in between.
+    let most = |motion: &WaypointMove, from: f64, to: f64| {
+        let at = |k: i32| from + (to - from) * f64::from(k) * 1e-3;
+        (0..=1000).map(|k| motion.at(at(k)).1.linear.norm()).fold(0.0, f64::max)
+    };
+    assert!(most(&motion, 0.0, motion.duration()) <= 0.3 * (1.0 + 1e-9));
+    let slowest = 0.3 / speeds[1];
+    assert!(motion.duration() > slowest, "{}", motion.duration());
+    let same = WaypointMove::with_speeds(&poses, &[0.5; 4], free).unwrap();
+    assert!(
+        (same.duration() - WaypointMove::new(&poses, BOUNDS).unwrap().duration()).abs() < 1e-12
+    );
+    // The bound of all counts too.
+    let bounded = WaypointMove::with_speeds(&poses, &[f64::INFINITY; 4], BOUNDS).unwrap();
+    assert_eq!(bounded, WaypointMove::new(&poses, BOUNDS).unwrap());
+    // On a straight line: slow in the middle.
+    let line: Vec<Pose> = (0..4).map(|i| Pose::from_translation(Vec3::X * f64::from(i))).collect();
+    let motion = WaypointMove::with_speeds(&line, &[0.5, 0.1, 0.5], free).unwrap();
+    let middle = motion.duration() * 0.5;
+    assert!((most(&motion, middle - 4.0, middle + 4.0) - 0.1).abs() < 1e-9);
+    assert!((most(&motion, 0.0, 2.0) - 0.5).abs() < 1e-9);
+    // A turn in place has the angular speed of the bounds.
+    let turned = Pose { rotation: Rotation::about_z(1.5), ..poses[0] };
+    let [slow, fast] =
+        [1e-3, 1e3].map(|v| WaypointMove::with_speeds(&[poses[0], turned], &[v], free).unwrap());
+    assert!((slow.duration() - 1.75).abs() < 1e-9 && (fast.duration() - 1.75).abs() < 1e-9);
+    // The speed of a repeated pose is left out with it; that of its row counts for the next one.
+    let twice = [&poses[..2], &poses[1..]].concat();
+    let left_out = WaypointMove::with_speeds(&twice, &[0.3, 1e-3, 0.1, 0.5, 0.2], free).unwrap();
+    assert_eq!(left_out, WaypointMove::with_speeds(&poses, &speeds, free).unwrap());
+    for (speeds, expected) in [
+        (&[0.1, 0.2, 0.3][..], "speeds of the waypoints"),
+        (&[0.1, -0.2, 0.3, 0.4], "-0.2 m/s from waypoint 1 to 2"),
+        (&[0.1, 0.2, f64::NAN, 0.4], "from waypoint 2 to 3"),
+        (&[0.1, 0.2, 0.3, 0.0], "0 m/s from waypoint 3 to 4"),
+    ] {
+        let error = WaypointMove::with_speeds(&poses, speeds, free).unwrap_err().to_string();
+        assert!(error.contains(expected), "'{expected}' not in: {error}");
+    }
+}
+
 #[test]
 fn times_are_met() {
     let poses = poses();

@@ -93,7 +93,11 @@ impl Job {
             (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
         } else if let Some(waypoints) = waypoints {
             options.speed = ServoOptions::new(&robot).speed;
-            let motion = waypoints.motion(from, path_bounds(args), &args.path)?;
+            let mut bounds = path_bounds(args);
+            if waypoints.have_speeds() && args.servo.speed.is_none() {
+                bounds.linear.velocity = f64::INFINITY;
+            }
+            let motion = waypoints.motion(from, bounds, &args.path)?;
             let to = motion.at(f64::INFINITY).0;
             (to, Goal::Waypoints(Box::new(motion)), controlled)
         } else if let Some(twist) = TwistGoal::of(&args.path, task)? {

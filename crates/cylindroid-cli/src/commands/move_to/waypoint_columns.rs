@@ -1,12 +1,15 @@
 //! The columns of a file of waypoints: by the names of its header, otherwise by their count.
 
 /// The names of columns; `t` is `time` too.
-const NAMES: [&str; 11] = ["time", "x", "y", "z", "qw", "qx", "qy", "qz", "roll", "pitch", "yaw"];
+const NAMES: [&str; 12] =
+    ["time", "x", "y", "z", "qw", "qx", "qy", "qz", "roll", "pitch", "yaw", "speed"];
 
 /// The places of the numbers in a row, each of which is in one of them.
 #[derive(Debug)]
 pub(super) struct Columns {
     pub(super) time: Option<usize>,
+    /// That of the translation on the way to the row.
+    pub(super) speed: Option<usize>,
     pub(super) position: [usize; 3],
     pub(super) orientation: Orientation,
 }
@@ -29,7 +32,7 @@ impl Columns {
             let name = if small == "t" { "time" } else { &small };
             let Some(name) = NAMES.iter().find(|known| **known == name) else {
                 let speeds = if small.contains("speed") {
-                    "; --speed is that of all waypoints, or give each a time"
+                    "; 'speed' is that on the way to a row [m/s]"
                 } else {
                     ""
                 };
@@ -47,8 +50,14 @@ impl Columns {
         let position = group(&known, ["x", "y", "z"])?;
         let quaternion = group(&known, ["qw", "qx", "qy", "qz"])?;
         let angles = group(&known, ["roll", "pitch", "yaw"])?;
+        let place = |wanted: &str| known.iter().position(|name| *name == wanted);
+        let (time, speed) = (place("time"), place("speed"));
+        if time.is_some() && speed.is_some() {
+            return Err("header: give time or speed, not both: speeds follow from times".into());
+        }
         Ok(Self {
-            time: known.iter().position(|name| *name == "time"),
+            time,
+            speed,
             position: position.ok_or("header: x, y and z are missing")?,
             orientation: match (quaternion, angles) {
                 (None, None) => Orientation::Kept,
@@ -70,7 +79,7 @@ impl Columns {
             7 | 8 => Orientation::Quaternion([3, 4, 5, 6].map(|i| first + i)),
             _ => return None,
         };
-        Some(Self { time, position: [0, 1, 2].map(|i| first + i), orientation })
+        Some(Self { time, speed: None, position: [0, 1, 2].map(|i| first + i), orientation })
     }
 
     /// How many there are.
@@ -80,7 +89,7 @@ impl Columns {
             Orientation::Quaternion(_) => 4,
             Orientation::RollPitchYaw(_) => 3,
         };
-        usize::from(self.time.is_some()) + 3 + turn
+        usize::from(self.time.or(self.speed).is_some()) + 3 + turn
     }
 
     /// The name of a column.
@@ -93,7 +102,8 @@ impl Columns {
         let of = |columns: &[usize], first: usize| {
             columns.iter().position(|c| *c == column).and_then(|i| NAMES.get(first + i).copied())
         };
-        of(&self.position, 1).or(of(turn, first)).unwrap_or("time")
+        let other = if self.speed == Some(column) { "speed" } else { "time" };
+        of(&self.position, 1).or(of(turn, first)).unwrap_or(other)
     }
 }
 

@@ -22,6 +22,8 @@ pub(super) struct Waypoints {
 #[derive(Debug)]
 struct Waypoint {
     time: Option<f64>,
+    /// On the way to it (m/s).
+    speed: Option<f64>,
     position: Vec3,
     rotation: Option<Rotation>,
 }
@@ -68,8 +70,13 @@ impl Waypoints {
         self.rows.iter().any(|row| row.time.is_some())
     }
 
+    /// True if the rows have speeds.
+    pub(super) fn have_speeds(&self) -> bool {
+        self.rows.iter().any(|row| row.speed.is_some())
+    }
+
     /// The move from a pose through them; without orientations that of the start is kept. Times
-    /// begin with the motion.
+    /// begin with the motion; a speed is that from the row before, or from the start, to its row.
     pub(super) fn motion(
         &self,
         from: Pose,
@@ -92,9 +99,11 @@ impl Waypoints {
         }));
         let times: Option<Vec<f64>> =
             std::iter::once(Some(0.0)).chain(self.rows.iter().map(|row| row.time)).collect();
-        let motion = match times {
-            Some(times) => WaypointMove::timed(&poses, &times, bounds),
-            None => WaypointMove::new(&poses, bounds),
+        let speeds: Option<Vec<f64>> = self.rows.iter().map(|row| row.speed).collect();
+        let motion = match (times, speeds) {
+            (Some(times), _) => WaypointMove::timed(&poses, &times, bounds),
+            (None, Some(speeds)) => WaypointMove::with_speeds(&poses, &speeds, bounds),
+            (None, None) => WaypointMove::new(&poses, bounds),
         };
         motion.map_err(|error| match error {
             Error::InvalidOption {
@@ -114,6 +123,10 @@ impl Columns {
             let (name, x) = (self.name(i), numbers[i]);
             return Err(format!("{place}, column {} ({name}): {x} is not finite", i + 1));
         }
+        let speed = self.speed.map(|i| (i, numbers[i]));
+        if let Some((i, speed)) = speed.filter(|(_, speed)| *speed <= 0.0) {
+            return Err(format!("{place}, column {} (speed): {speed} m/s must be positive", i + 1));
+        }
         let rotation = match self.orientation {
             Orientation::Kept => None,
             Orientation::Quaternion(columns) => {
@@ -129,6 +142,7 @@ impl Columns {
         };
         Ok(Waypoint {
             time: self.time.map(|i| numbers[i]),
+            speed: speed.map(|(_, speed)| speed),
             position: Vec3::from_array(self.position.map(|i| numbers[i])),
             rotation,
         })

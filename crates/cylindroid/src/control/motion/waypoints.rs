@@ -6,12 +6,18 @@
 //!          passed at a distance of T |v1 - v0| / 8, T the duration of its blend. Angular accelerations
 //!          are within their bound where |w0 x w1| is at most that bound
 //! Fails    on non-finite input, times that do not increase or are too short for the accelerations,
-//!          distances, times and bounds that differ by too many orders of magnitude
+//!          speeds that are not positive, distances, times and bounds that differ by too many orders of
+//!          magnitude
 //! Why so   a robot need not stop at a waypoint, and the lines between them stay straight; splines
-//!          pass through the waypoints exactly, but swing between them
+//!          pass through the waypoints exactly, but swing between them. Speeds without times are those
+//!          of `waypoints/speeds.rs`
 //! Source   Craig 2005, section 7.3 (linear function with parabolic blends); Siciliano et al. 2009,
 //!          section 4.2.2
-//! Checked  tests/motion/waypoints.rs, tests/it/waypoints.rs
+//! Checked  tests/motion/waypoints.rs, tests/motion/dense_waypoints.rs, tests/it/waypoints.rs
+
+mod speeds;
+
+use speeds::{Phases, Segment, Speeds};
 
 use super::cartesian_move::CartesianBounds;
 use super::path::CartesianPath;
@@ -21,21 +27,20 @@ use crate::error::{Error, Result};
 use crate::spatial::{Pose, Rotation, Twist, Vec3};
 use crate::tolerance::{ORIENTATION, POSITION};
 
-/// Largest number of rounds in which segments are lengthened until their blends fit.
-const ROUNDS: usize = 200;
 /// Share of the speed that the accelerations permit from which a bound of it counts as none [-].
 const FAR_BEYOND: f64 = 1e3;
 
 /// A frame moving through waypoints without stopping, from rest to rest.
 ///
 /// ```text
-/// between waypoints  p' = v_i,  R' = w_i x R,   v_i = (p_i+1 - p_i) / D_i
-/// blend at i         p = p_i - v_i-1 (T - u)^2 / 2 T + v_i u^2 / 2 T,   0 <= u <= T
-///                    R = exp(w_i u^2 / 2 T) exp(-w_i-1 (T - u)^2 / 2 T) R_i
+/// on a line   p' = v,  R' = w x R
+/// in a blend  p = p_i - v0 (T - u)^2 / 2 T + v1 u^2 / 2 T,   0 <= u <= T
+///             R = exp(w1 u^2 / 2 T) exp(-w0 (T - u)^2 / 2 T) R_i
 /// ```
 ///
-/// D_i are the durations of the segments, T those of the blends, in which velocities change with
-/// constant acceleration. Units: m, rad, s.
+/// In a blend of duration T at the waypoint p_i, R_i the twist changes from v0, w0 to v1, w1 with
+/// constant acceleration. On a line it is constant, and changes where the blends at its ends are
+/// passed at less than its highest speed. Units: m, rad, s.
 ///
 /// ```
 /// use cylindroid::control::{CartesianBounds, KinematicBounds, WaypointMove};
@@ -58,13 +63,14 @@ const FAR_BEYOND: f64 = 1e3;
 pub struct WaypointMove {
     knots: Vec<Knot>,
     duration: f64,
+    largest_deviation: f64,
 }
 
-/// A waypoint with its blend.
+/// A waypoint with its blend, or a place on a line where the speed changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Knot {
     pose: Pose,
-    /// Time at which the lines meet, the middle of the blend (s).
+    /// The middle of the blend (s).
     time: f64,
     /// Duration of the blend (s).
     blend: f64,
@@ -74,33 +80,61 @@ struct Knot {
 }
 
 impl WaypointMove {
-    /// Through poses with at most the speeds and accelerations of `bounds`; segments are slowed down
-    /// where their blends would not fit. Poses that repeat the last one before are left out. An
-    /// infinite speed is none to keep to. The jerk is not bounded: those of `bounds` must be infinite.
+    /// Through poses with at most the speeds and accelerations of `bounds`; it is slower where blends
+    /// would not fit otherwise. Along a densely sampled curve of radius R the speed is that of the
+    /// curve, sqrt(a R) or the bound, for any number of points. Poses that repeat the last one before
+    /// are left out. An infinite speed is none to keep to. The jerk is not bounded: those of `bounds`
+    /// must be infinite.
     ///
     /// # Errors
-    /// Fewer than two poses, non-finite poses, bounds that are not positive, a finite jerk; poses so
-    /// close together that their blends do not fit, of which two are named; a duration that overflows.
+    /// Fewer than two poses, non-finite poses, bounds that are not positive, a finite jerk; a duration
+    /// that overflows.
     pub fn new(poses: &[Pose], bounds: CartesianBounds) -> Result<Self> {
+        Self::bounded(poses, None, bounds)
+    }
+
+    /// [`WaypointMove::new`] with a speed for each segment (m/s), one fewer than poses: at most that of
+    /// the translation on the way to the next pose, and that of `bounds`. A segment that only rotates
+    /// has the angular speed of `bounds`. Blends lie between the speeds of both segments.
+    ///
+    /// # Errors
+    /// As [`WaypointMove::new`]; another number of speeds, and speeds that are not positive.
+    pub fn with_speeds(poses: &[Pose], speeds: &[f64], bounds: CartesianBounds) -> Result<Self> {
+        Self::bounded(poses, Some(speeds), bounds)
+    }
+
+    fn bounded(poses: &[Pose], given: Option<&[f64]>, bounds: CartesianBounds) -> Result<Self> {
         check(poses, bounds)?;
+        if let Some(given) = given {
+            Error::check_len("speeds of the waypoints", poses.len() - 1, given.len())?;
+            if let Some(i) = given.iter().position(|speed| speed.is_nan() || *speed <= 0.0) {
+                return Err(Error::InvalidOption {
+                    option: "speeds of the waypoints",
+                    value: format!(
+                        "{} m/s from waypoint {i} to {} (0 is the start)",
+                        given[i],
+                        i + 1
+                    ),
+                    reason: "a speed must be positive".to_owned(),
+                });
+            }
+        }
         let (poses, places) = &without_repetitions(poses)?;
         let ways = ways(poses)?;
+        // Those of the segments that end at the poses that are kept.
+        let own = |i: usize| given.map_or(f64::INFINITY, |given| given[places[i + 1] - 1]);
+        let fastest = (0..ways.len()).map(own).fold(0.0, f64::max);
         let [linear, angular] = speeds(&ways, bounds);
+        let linear = linear.min(fastest);
         let over = |way: Vec3, speed: f64| if speed > 0.0 { way.norm() / speed } else { 0.0 };
-        let duration = |way: &Twist| over(way.linear, linear).max(over(way.angular, angular));
-        let mut durations: Vec<f64> = ways.iter().map(duration).collect();
-        match fit(&ways, &mut durations, bounds) {
-            Ok(blends) => Self::assemble(poses, &ways, &durations, &blends, 0.5 * blends[0]),
-            Err(short) => Err(Error::InvalidOption {
-                option: "waypoints",
-                value: format!("{} and {} (0 is the start)", places[short], places[short + 1]),
-                reason: format!(
-                    "{} m apart, they are among the waypoints too close together for their \
-                     blends; leave some out, or permit more acceleration or less speed",
-                    ways[short].linear.norm()
-                ),
-            }),
-        }
+        let segment = |(i, way): (usize, &Twist)| {
+            let time = over(way.linear, linear).max(over(way.angular, angular));
+            let limit = own(i) * time / way.linear.norm();
+            let limit = if limit < 1.0 { limit } else { 1.0 };
+            Segment::new(*way, time, limit, bounds)
+        };
+        let segments: Vec<Segment> = ways.iter().enumerate().map(segment).collect();
+        Self::assemble(poses, &segments, &speeds::quickest(&segments, bounds), bounds)
     }
 
     /// Through poses at given times (s): it starts at rest at the first time, passes the others in
@@ -134,7 +168,7 @@ impl WaypointMove {
         };
         let shares = if last == 0 { 1.0 } else { 0.5 };
         let rest = |i: usize| {
-            let (linear, angular) = sizes(ways[i], bounds);
+            let (linear, angular) = speeds::sizes(ways[i], bounds);
             let (size, whole) = (linear.max(angular), durations[i]);
             // The smaller root without differences of large numbers, nor their squares.
             let least = 2.0 * (shares * size).sqrt();
@@ -145,48 +179,66 @@ impl WaypointMove {
         let Some(end) = rest(last) else { return too_short(last) };
         durations[0] -= 0.5 * first;
         durations[last] -= 0.5 * end;
-        let mut blends = blends(&ways, &durations, bounds);
-        blends[0] = first;
-        blends[last + 1] = end;
+        let of = |(way, time): (&Twist, &f64)| Segment::new(*way, *time, 1.0, bounds);
+        let segments: Vec<Segment> = ways.iter().zip(&durations).map(of).collect();
+        let mut speeds = vec![Speeds { start: 1.0, top: 1.0, end: 1.0 }; segments.len()];
+        (speeds[0].start, speeds[last].end) = (0.0, 0.0);
+        let mut blends = speeds::blends(&segments, &speeds, bounds);
+        (blends[0], blends[last + 1]) = (first, end);
         for (i, duration) in durations.iter().enumerate() {
             if 0.5 * (blends[i] + blends[i + 1]) > duration * (1.0 + 1e-9) {
                 return too_short(i);
             }
         }
-        Self::assemble(poses, &ways, &durations, &blends, 0.5 * first)
+        Self::assemble(poses, &segments, &speeds, bounds)
     }
 
     fn assemble(
         poses: &[Pose],
-        ways: &[Twist],
-        durations: &[f64],
-        blends: &[f64],
-        start: f64,
+        segments: &[Segment],
+        speeds: &[Speeds],
+        bounds: CartesianBounds,
     ) -> Result<Self> {
-        let twist = |i: usize| {
-            let moves = durations[i] > 0.0;
-            if moves { ways[i] * (1.0 / durations[i]) } else { Twist::ZERO }
-        };
-        let mut time = start;
-        let mut knots = Vec::with_capacity(poses.len());
-        for (i, pose) in poses.iter().enumerate() {
-            knots.push(Knot {
-                pose: *pose,
-                time,
-                blend: blends[i],
-                before: if i > 0 { twist(i - 1) } else { Twist::ZERO },
-                after: if i < ways.len() { twist(i) } else { Twist::ZERO },
-            });
-            time += durations.get(i).unwrap_or(&0.0);
+        let blends = speeds::blends(segments, speeds, bounds);
+        let last = segments.len() - 1;
+        let (mut time, mut end_before, mut deviation) = (0.0, Twist::ZERO, 0.0_f64);
+        let mut knots: Vec<Knot> = Vec::with_capacity(2 * poses.len());
+        for (i, segment) in segments.iter().enumerate() {
+            let Phases { twists: [start, top, end], times } =
+                segment.phases(speeds[i], [blends[i], blends[i + 1]]);
+            let [first, up, constant, down, half] = times;
+            let mut add = |pose, time, blend, before, after| {
+                knots.push(Knot { pose, time, blend, before, after });
+            };
+            if i > 0 {
+                add(poses[i], time, blends[i], end_before, start);
+                deviation = deviation.max(0.125 * blends[i] * (start - end_before).linear.norm());
+            }
+            time += first;
+            if i == 0 {
+                add(poses[0], 0.5 * up, up, Twist::ZERO, top);
+            } else if up > 0.0 {
+                let pose = moved(poses[i], start * (first + 0.5 * up));
+                add(pose, time + 0.5 * up, up, start, top);
+            }
+            time += up + constant;
+            if i == last {
+                add(poses[i + 1], time + 0.5 * down, down, top, Twist::ZERO);
+            } else if down > 0.0 {
+                let pose = moved(poses[i + 1], end * -(half + 0.5 * down));
+                add(pose, time + 0.5 * down, down, top, end);
+            }
+            time += down + half;
+            end_before = end;
         }
-        let duration = time + 0.5 * blends[ways.len()];
-        let is_finite = |k: &Knot| k.blend.is_finite() && k.after.is_finite();
-        if duration.is_finite() && knots.iter().all(is_finite) {
-            return Ok(Self { knots, duration });
+        let is_finite =
+            |k: &Knot| k.blend.is_finite() && k.before.is_finite() && k.after.is_finite();
+        if time.is_finite() && knots.iter().all(is_finite) {
+            return Ok(Self { knots, duration: time, largest_deviation: deviation });
         }
         Err(Error::InvalidOption {
             option: "waypoints",
-            value: format!("a duration of {duration} s"),
+            value: format!("a duration of {time} s"),
             reason: "distances, times and bounds are too many orders of magnitude apart".to_owned(),
         })
     }
@@ -200,9 +252,7 @@ impl WaypointMove {
     /// The largest distance at which a waypoint is passed (m).
     #[must_use]
     pub fn largest_deviation(&self) -> f64 {
-        let inner = self.knots.get(1..self.knots.len() - 1).unwrap_or_default();
-        let of = |k: &Knot| 0.125 * k.blend * (k.after - k.before).linear.norm();
-        inner.iter().map(of).fold(0.0, f64::max)
+        self.largest_deviation
     }
 
     /// Pose and twist (world axes, at the moving origin) at time `t` (s); at rest at the start before
@@ -294,68 +344,6 @@ fn speeds(ways: &[Twist], bounds: CartesianBounds) -> [f64; 2] {
         bounds.velocity.min(FAR_BEYOND * bounds.acceleration.sqrt() * length.sqrt())
     };
     [top(bounds.linear, |way| way.linear), top(bounds.angular, |way| way.angular)]
-}
-
-/// Lengthens the durations of segments until each holds half of the blends at its ends, and all of
-/// those from and to rest; returns the blends. Otherwise, a segment that is too short.
-fn fit(
-    ways: &[Twist],
-    durations: &mut [f64],
-    bounds: CartesianBounds,
-) -> std::result::Result<Vec<f64>, usize> {
-    let mut blends = blends(ways, durations, bounds);
-    let mut unsettled: Vec<usize> = (0..ways.len()).collect();
-    let mut short = Vec::new();
-    for _ in 0..ROUNDS {
-        short.clear();
-        for &i in &unsettled {
-            let (needed, duration) = (0.5 * (blends[i] + blends[i + 1]), durations[i]);
-            if needed > duration * (1.0 + 1e-12) {
-                // Blends shrink while the segment grows: the geometric mean of both.
-                durations[i] = (needed * duration).sqrt().max(duration * 1.001);
-                short.push(i);
-            }
-        }
-        if short.is_empty() {
-            return Ok(blends);
-        }
-        unsettled.clear();
-        for &i in &short {
-            // Its blends change, and with them the needs of its neighbours.
-            let next = unsettled.last().map_or(0, |last| last + 1);
-            unsettled.extend(next.max(i.saturating_sub(1))..(i + 2).min(ways.len()));
-            for knot in [i, i + 1] {
-                blends[knot] = blend(knot, ways, durations, bounds);
-            }
-        }
-    }
-    Err(short[0])
-}
-
-/// |way| / a of both parts (s^2).
-fn sizes(way: Twist, bounds: CartesianBounds) -> (f64, f64) {
-    let Twist { linear, angular } = way;
-    let over = |part: Vec3, a: f64| part.norm() / a;
-    (over(linear, bounds.linear.acceleration), over(angular, bounds.angular.acceleration))
-}
-
-/// The durations of the blends in which no acceleration is exceeded (s).
-fn blends(ways: &[Twist], durations: &[f64], bounds: CartesianBounds) -> Vec<f64> {
-    (0..=ways.len()).map(|i| blend(i, ways, durations, bounds)).collect()
-}
-
-fn blend(i: usize, ways: &[Twist], durations: &[f64], bounds: CartesianBounds) -> f64 {
-    let twist = |i: usize| match (ways.get(i), durations.get(i)) {
-        (Some(way), Some(d)) if *d > 0.0 => *way * (1.0 / d),
-        _ => Twist::ZERO,
-    };
-    let before = if i > 0 { twist(i - 1) } else { Twist::ZERO };
-    let (linear, angular) = sizes(twist(i) - before, bounds);
-    // The axis of the first rotation turns along: at most 3/4 |w0 x w1| more.
-    let turning = 0.75 * before.angular.cross(twist(i).angular).norm();
-    let a = bounds.angular.acceleration;
-    let angular = angular * a / (a - turning).max(0.25 * a);
-    linear.max(angular)
 }
 
 fn check(poses: &[Pose], bounds: CartesianBounds) -> Result<()> {

@@ -168,13 +168,22 @@ impl TaskRows {
     /// The rate at which these joint velocities reduce the error, its lengths divided by `length`
     /// [1/s]; without an error or rows infinite.
     pub(super) fn progress(&self, rates: &[f64], length: f64) -> f64 {
+        self.along(&self.error, rates, length)
+    }
+
+    /// The share of the feed-forward velocity that these joint velocities have, likewise [-].
+    pub(super) fn followed(&self, rates: &[f64], length: f64) -> f64 {
+        self.along(&self.feed_forward, rates, length)
+    }
+
+    fn along(&self, goal: &[f64], rates: &[f64], length: f64) -> f64 {
         let (mut reduced, mut square) = (0.0, 0.0);
-        for (i, error) in self.error.iter().enumerate() {
-            let scaled = error * self.unit(i, length).powi(2);
+        for (i, goal) in goal.iter().enumerate() {
+            let scaled = goal * self.unit(i, length).powi(2);
             let velocity: f64 =
                 (0..self.jacobian.cols()).map(|j| self.jacobian[(i, j)] * rates[j]).sum();
             reduced += scaled * velocity;
-            square += scaled * error;
+            square += scaled * goal;
         }
         if square > 0.0 { reduced / square } else { f64::INFINITY }
     }

@@ -4,7 +4,8 @@
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
 //! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
 //! (the levels, solved with `solver/hierarchy.rs`), `linear_range` (how far they go), `braking` (what must stay possible after a step),
-//! `escape` and `escaping` (from configurations in which they are lost) and `simulation`.
+//! `escape` and `escaping` (from configurations in which they are lost), `velocity_mode` (twists in
+//! place of targets) and `simulation`.
 
 mod braking;
 mod braking_path;
@@ -22,6 +23,8 @@ mod rows;
 mod simulation;
 mod stack;
 mod task_servo;
+mod twist_command;
+mod velocity_mode;
 
 pub use crate::task::HalfSpace;
 pub use goals::{TaskGoals, goals_of};

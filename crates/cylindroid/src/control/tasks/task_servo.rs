@@ -25,6 +25,7 @@ use super::levels::{Stack, TaskRows};
 use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
+use super::twist_command::TwistCommand;
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{
     BrakingState, DefaultLimits, Plant, Predictor, StallDetector, Status, acceleration_of,
@@ -37,9 +38,11 @@ use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{Matrix, norm};
 use crate::model::{Limits, Mechanism};
+use crate::spatial::Twist;
 use crate::task::HalfSpace;
 
-/// Share of its gain at which the error of a task falls while it follows its target [-].
+/// Share of its gain at which the error of a task falls while it follows its target, and of a twist that
+/// is followed [-].
 const FOLLOWED: f64 = 0.1;
 
 /// A controller of any number of tasks with priorities, inside limits and outside of collisions.
@@ -87,6 +90,8 @@ const FOLLOWED: f64 = 0.1;
 pub struct TaskServo {
     pub(super) options: TaskServoOptions,
     pub(super) tasks: Vec<MotionTask>,
+    /// Of tasks that follow one instead of their target.
+    pub(super) twists: Vec<Option<TwistCommand>>,
     pub(super) state: State,
     scratch: Scratch,
     pub(super) rows: Vec<TaskRows>,
@@ -205,6 +210,7 @@ impl TaskServo {
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
             last_targets,
+            twists: vec![None; tasks.len()],
             predictor: Predictor::new(mechanism, options.plant, options.dt),
             stacks,
             motions,
@@ -219,15 +225,15 @@ impl TaskServo {
         &self.tasks
     }
 
-    /// The objective of the task of this name, to move its target. The number of its rows must stay.
+    /// The objective of the task of this name, to move its target. The number of its rows must stay. A
+    /// twist that it follows ends.
     ///
     /// # Errors
     /// [`Error::UnknownName`] with the nearest names.
     pub fn objective_mut(&mut self, name: &str) -> Result<&mut TaskObjective> {
-        match self.tasks.iter().position(|t| t.name == name) {
-            Some(i) => Ok(&mut self.tasks[i].objective),
-            None => Err(Error::unknown("task", name, self.tasks.iter().map(|t| t.name.as_str()))),
-        }
+        let place = self.place(name)?;
+        self.twists[place] = None;
+        Ok(&mut self.tasks[place].objective)
     }
 
     /// The collision model, if distances are kept.
@@ -298,6 +304,7 @@ impl TaskServo {
         self.escape.iter_mut().for_each(|escape| escape.reset());
         self.predictor.iter_mut().for_each(Predictor::reset);
         self.detectors.fill(StallDetector::new());
+        self.twists.fill(None);
         self.set.reset();
         for stack in &mut self.stacks {
             stack.level.reset();
@@ -321,6 +328,7 @@ impl TaskServo {
             }
         }
         self.state.set(self.motions.close_measured(q)?)?;
+        self.load_twists();
         self.evaluate()?;
         for rows in &mut self.rows {
             rows.measured_error.copy_from_slice(&rows.error);
@@ -351,6 +359,7 @@ impl TaskServo {
             predictor.record(mechanism, &self.rates[..mechanism.n()]);
         }
         self.report(braking);
+        self.age_twists();
         Ok(self.status())
     }
 
@@ -440,12 +449,20 @@ impl TaskServo {
             let own = |stack: &Stack| stack.members.iter().position(|m| m.task == i);
             let member = self.stacks.iter().find_map(|s| Some((s, &s.members[own(s)?])));
             let scaled = position_error / self.options.length + orientation_error;
-            let reached = position_error <= task.tolerance.position
+            let follows = self.twists[i].is_some_and(|twist| twist.desired() != Twist::ZERO);
+            let reached = !follows
+                && position_error <= task.tolerance.position
                 && orientation_error <= task.tolerance.orientation;
-            // Towards a target that moves the error may grow although the task is followed.
-            if task.objective.has_moved(&mut self.last_targets[i])
-                && rows.progress(&self.rates, self.options.length) >= FOLLOWED * task.gain
-            {
+            // Towards a target that moves the error may grow although the task is followed; along a
+            // twist there is none.
+            let has_moved = task.objective.has_moved(&mut self.last_targets[i]);
+            let length = self.options.length;
+            let is_followed = if follows {
+                rows.followed(&self.rates, length) >= FOLLOWED
+            } else {
+                has_moved && rows.progress(&self.rates, length) >= FOLLOWED * task.gain
+            };
+            if is_followed {
                 self.detectors[i] = StallDetector::new();
             }
             let stalled = self.detectors[i].stalled(scaled, braking, self.options.dt);

@@ -15,6 +15,7 @@ mod jerk;
 mod just_beyond;
 mod limits;
 mod measured;
+mod measured_twist;
 mod moving;
 mod object;
 mod plant;
@@ -29,6 +30,7 @@ mod task_edges;
 mod task_invariance;
 mod task_kinds;
 mod task_reports;
+mod task_twist;
 mod tasks;
 mod twist;
 

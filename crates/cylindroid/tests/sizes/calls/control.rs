@@ -81,6 +81,8 @@ calls! {
     control::Servo::step_actuated = |s: &'static mut Servo, q: &'static [f64], to: Target| s.step_actuated(q, to);
     control::Servo::step_measured = |s: &'static mut Servo, q: &'static [f64], more: &'static [(usize, f64)], to: Target| { s.step_measured(q, more, to) };
     control::Servo::step_twist;
+    control::Servo::step_twist_actuated;
+    control::Servo::step_twist_measured;
     control::Servo::step_with = |s: &'static mut Servo, q: &'static [f64], to: Target, extra: &'static [f64]| s.step_with(q, to, extra);
     control::ServoOptions::check;
     control::ServoOptions::default_secondary;
@@ -99,6 +101,8 @@ calls! {
     control::TaskServo::advance = |s: &'static TaskServo, q: &'static mut [f64]| q.len() >= s.mechanism().n() && { s.advance(q); true };
     control::TaskServo::collision_model;
     control::TaskServo::collision_model_mut;
+    control::TaskServo::command_twist;
+    control::TaskServo::commanded_twist;
     control::TaskServo::dt;
     control::TaskServo::half_spaces;
     control::TaskServo::joint_velocities;
@@ -131,6 +135,7 @@ calls! {
     control::WaypointMove::new;
     control::WaypointMove::target;
     control::WaypointMove::timed;
+    control::WaypointMove::with_speeds;
     control::find_reachable_configuration;
     control::goals_of;
     control::simulate = |servo: &'static mut Servo, q: &'static [f64], duration: f64, target: Target, last: bool| { control::simulate(servo, q, duration, move |_| (target, last), |_| ()) };

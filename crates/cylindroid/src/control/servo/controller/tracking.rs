@@ -5,12 +5,14 @@
 //!          (`coupled.rs`)
 //! Valid    while the actuated joints determine the passive ones: the assembly mode is the one of
 //!          the last step. Near a type II singularity, where two meet, the servo stops
-//! Checked  tests/it/servo/measured.rs
+//! Checked  tests/it/servo/measured.rs, tests/it/servo/measured_twist.rs
 
 use super::super::step::{Step, Target};
+use super::super::twist_step::TwistStep;
 use super::Servo;
 use crate::error::{Error, Result};
 use crate::model::CoordinateKind;
+use crate::spatial::Twist;
 
 impl Servo {
     /// One step from the positions of the actuated coordinates alone, in ascending order of their
@@ -59,6 +61,43 @@ impl Servo {
         sensors: &[(usize, f64)],
         target: impl Into<Target>,
     ) -> Result<Step> {
+        self.step_tracked(actuated, sensors, |servo, q| servo.step(q, target))
+    }
+
+    /// [`Servo::step_twist`] from the positions of the actuated coordinates alone, as
+    /// [`Servo::step_actuated`] takes them: the drives of a parallel robot follow a twist.
+    ///
+    /// # Errors
+    /// As [`Servo::step_actuated`] and [`Servo::step_twist`]. The servo is unchanged: the command is
+    /// not taken, and the last one grows no older.
+    pub fn step_twist_actuated(
+        &mut self,
+        actuated: &[f64],
+        command: Option<Twist>,
+    ) -> Result<TwistStep> {
+        self.step_twist_measured(actuated, &[], command)
+    }
+
+    /// [`Servo::step_twist_actuated`] with redundant sensors, as [`Servo::step_measured`] has them.
+    ///
+    /// # Errors
+    /// As [`Servo::step_measured`] and [`Servo::step_twist`].
+    pub fn step_twist_measured(
+        &mut self,
+        actuated: &[f64],
+        sensors: &[(usize, f64)],
+        command: Option<Twist>,
+    ) -> Result<TwistStep> {
+        self.step_tracked(actuated, sensors, |servo, q| servo.step_twist(q, command))
+    }
+
+    /// A step from the configuration that is tracked with these positions.
+    fn step_tracked<T>(
+        &mut self,
+        actuated: &[f64],
+        sensors: &[(usize, f64)],
+        step: impl FnOnce(&mut Self, &[f64]) -> Result<T>,
+    ) -> Result<T> {
         let expected = self.mechanism.actuated().count();
         Error::check_len("actuated positions", expected, actuated.len())?;
         Error::check_finite("actuated positions", actuated)?;
@@ -82,7 +121,7 @@ impl Servo {
         }
         self.track(true);
         let done = match self.fit(&mut q, sensors) {
-            Ok(()) => self.step(&q, target),
+            Ok(()) => step(self, &q),
             Err(error) => Err(error),
         };
         let done = done.map_err(|error| self.lost(&q, error));

@@ -14,7 +14,8 @@ use crate::tolerance::MAX_MAGNITUDE;
 
 impl Servo {
     /// One step of velocity mode: the tool follows a twist (world axes, at the tool) within all
-    /// limits, without a target pose. `command` is the twist that arrived since the last step, if
+    /// limits, without a target pose ([`Servo::step_twist_actuated`] from the actuated joints alone).
+    /// `command` is the twist that arrived since the last step, if
     /// any. Without a new command the last one holds for [`ServoOptions::command_timeout`], then the
     /// joints brake: a lost connection stops the arm. Secondary tasks pause while the twist is zero.
     ///
