@@ -163,13 +163,14 @@ impl Servo {
                 limits_of_servo(l, &options.plant, [a, jerk], gain)
             })
             .collect();
-        let space = TaskSpace::new(options.scaling(), &chain, &limits);
+        let joint_weights = options.weights(mechanism);
+        let space = TaskSpace::new(options.scaling(&joint_weights), &chain, &limits);
         let margin =
             |(i, l): (usize, &Limits)| BrakingMargin::new(l, options.dt, space.is_locked(i));
         let m = space.rows.len();
         let coupled = if mechanism.is_closed() {
             let locked = (0..n).filter(|&i| space.is_locked(i)).collect();
-            Some(Box::new(Coupled::new(mechanism, &options.joint_weights, locked, m)?))
+            Some(Box::new(Coupled::new(mechanism, &joint_weights, locked, m)?))
         } else {
             None
         };
