@@ -28,15 +28,11 @@ pub const WIDEST_RANGE: f64 = 1e3;
 /// squares and the products with one another are finite, so that finite input gives finite results.
 pub const MAX_MAGNITUDE: f64 = 1e120;
 
-/// Lengths of a mechanism below this (m) are roundings: a hundredth of an atom's diameter, far above
-/// the roundings of files whose lengths are metres, 1e-16. A mechanism of shorter lengths alone is
-/// refused: beside one radian or one metre per second they would be lost. It is not if all of them are
-/// [`ROUNDED_LENGTHS`].
+/// Lengths of a mechanism below this (m) are roundings: a hundredth of an atom's diameter. A mechanism
+/// of shorter lengths alone is refused: beside one radian or one metre per second they would be lost.
 pub const MIN_LENGTH: f64 = 1e-12;
 
-/// The longest length (m) of a mechanism without lengths, where those that its file should have as zero
-/// are what sums and sines of metres leave: from the 64th part of a rounding of one metre to the
-/// diameter of a proton. Shorter ones are lengths in another unit.
+/// Longest length (m) of a mechanism that has none but what sums and sines of metres leave.
 pub const ROUNDED_LENGTHS: [f64; 2] = [f64::EPSILON / 64.0, 1e-15];
 
 /// A vector shorter than this [-] has no direction (axes in files are near unit length).

@@ -438,12 +438,12 @@ mod tests {
             let limits = Limits { lower: -size, upper: size, ..Limits::NONE };
             let margin = BrakingMargin::new(&limits, dt, false);
             let rounding = size * f64::EPSILON;
-            for (steps, sign) in (0..200).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+            for (steps, sign) in (0..100).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
                 let position = sign * (size - f64::from(steps) * rounding);
                 let now = JointState { position, velocity: 0.0, acceleration: 0.0 };
                 let bounds = VelocityBounds::next(&limits, now, dt);
-                for way in 0..50 {
-                    let rate = sign * f64::from(way) * rounding / dt;
+                for way in 0..500 {
+                    let rate = sign * 0.1 * f64::from(way) * rounding / dt;
                     if margin.allows(now, rate) {
                         clear += 1;
                         let free = bounds.contains(rate) && bounds.met(rate).is_none();

@@ -464,8 +464,8 @@ mod tests {
         let gap = 0.02;
         let mut collisions = CollisionAvoidance { model, gap, margin: 0.1 };
         let mut path = BrakingPath::new(&robot, &motions, 1).unwrap();
-        let mut q = robot.home().to_vec();
-        path.expected.clone_from(&q);
+        let start = [0.3, -0.2];
+        path.expected.copy_from_slice(&start);
         path.revision = collisions.model.revision();
         for (x, y, expected) in [
             (0.0, 0.0, true),
@@ -475,15 +475,14 @@ mod tests {
             (0.3, -0.21, false),
             (-0.51, 0.0, false),
         ] {
-            (q[0], q[1]) = (x * gap, y * gap);
-            let state = robot.state(&q).unwrap();
+            let state = robot.state(&[start[0] + x * gap, start[1] + y * gap]).unwrap();
             path.is_clear = true;
             assert_eq!(path.is_continued(&state, &collisions), expected, "{x} {y}");
             path.is_clear = false;
             assert!(!path.is_continued(&state, &collisions));
         }
         path.is_clear = true;
-        let state = robot.state(robot.home()).unwrap();
+        let state = robot.state(&start).unwrap();
         collisions.model.move_obstacle("ball", Pose::from_translation(Vec3::Z * 8.0)).unwrap();
         assert!(!path.is_continued(&state, &collisions));
         path.revision = collisions.model.revision();
