@@ -252,7 +252,7 @@ fn places_are_the_closest_samples_and_points_beyond_the_ends_of_branches() {
     // Through all values: the sample next to 0.3, and between both ends on the left.
     let (a, b) = ((0, 0..5, one), (1, 0..5, other));
     assert_eq!(places_of(std::slice::from_ref(&a)), [(0.26, 0)]);
-    assert_eq!(places_of(&[a, b.clone()]), [(0.46, 0), (0.06, 0), (0.26, 0), (0.26, 1)]);
+    assert_eq!(places_of(&[a, b]), [(0.46, 0), (0.06, 0), (0.26, 0), (0.26, 1)]);
     // A branch that ends before 0.36 is followed for a step: to 0.3, where it is closest.
     let short = (0, 1..3, one);
     assert_eq!(places_of(std::slice::from_ref(&short)), [(0.3, 0), (0.26, 0)]);
