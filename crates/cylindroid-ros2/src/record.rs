@@ -10,6 +10,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, Result};
+use cylindroid::model::check_output_file;
 use mcap::WriteOptions;
 use mcap::records::MessageHeader;
 use ros2_client::dds::rustdds::CDRSerializerAdapter;
@@ -43,7 +44,8 @@ pub(crate) struct Recorder {
 
 impl Recorder {
     pub(crate) fn new(path: &Path) -> Result<Self> {
-        let file = File::create(path).with_context(|| path.display().to_string())?;
+        let file = check_output_file(path).and_then(|()| File::create(path));
+        let file = file.with_context(|| path.display().to_string())?;
         let (sender, receiver) = sync_channel(WAITING);
         let writer = thread::Builder::new().name("record".to_owned());
         let writer = writer.spawn(move || write(file, &receiver))?;
@@ -93,4 +95,28 @@ fn write(file: File, entries: &Receiver<Entry>) -> Result<()> {
     }
     writer.finish()?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Recorder;
+
+    /// A folder and a device are no place for a record; a new file and one that is there are.
+    #[test]
+    fn records_are_regular_files() {
+        let folder = std::env::temp_dir().join(format!("cylindroid-record-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let new = |path: &std::path::Path| Recorder::new(path).map(|mut r| r.finish().unwrap());
+        let error = new(&folder).unwrap_err();
+        assert!(format!("{error:#}").contains("it is a folder"), "{error:#}");
+        if cfg!(unix) {
+            let error = new("/dev/null".as_ref()).unwrap_err();
+            assert!(format!("{error:#}").contains("/dev/null: it is a device"), "{error:#}");
+        }
+        let file = folder.join("a.mcap");
+        for _ in 0..2 {
+            assert_eq!(new(&file).unwrap(), 0);
+        }
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }

@@ -28,10 +28,12 @@ pub const WIDEST_RANGE: f64 = 1e3;
 /// squares and the products with one another are finite, so that finite input gives finite results.
 pub const MAX_MAGNITUDE: f64 = 1e120;
 
-/// Lengths of a mechanism below this (m) are roundings: a hundredth of an atom's diameter, far above
-/// the roundings of files whose lengths are metres, 1e-16. A mechanism of shorter lengths alone is
-/// refused: beside one radian or one metre per second they would be lost.
+/// Lengths of a mechanism below this (m) are roundings: a hundredth of an atom's diameter. A mechanism
+/// of shorter lengths alone is refused: beside one radian or one metre per second they would be lost.
 pub const MIN_LENGTH: f64 = 1e-12;
+
+/// Longest length (m) of a mechanism that has none but what sums and sines of metres leave.
+pub const ROUNDED_LENGTHS: [f64; 2] = [f64::EPSILON / 64.0, 1e-15];
 
 /// A vector shorter than this [-] has no direction (axes in files are near unit length).
 pub const ZERO_AXIS: f64 = 1e-9;

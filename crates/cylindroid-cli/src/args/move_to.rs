@@ -284,7 +284,8 @@ pub(crate) struct ServoArgs {
 
     /// Weights of joint velocities, one for each coordinate: a large one keeps a joint almost at
     /// rest. `inertia`: the diagonal of the mass matrix, at the configuration of every step
-    /// [default: 1]
+    /// [default: 1; of slides beside joints that turn 1/L^2 with the length L of the model, but not
+    /// with tasks]
     #[arg(long, value_name = "WEIGHTS", allow_hyphen_values = true)]
     pub(crate) joint_weights: Option<Weights>,
 

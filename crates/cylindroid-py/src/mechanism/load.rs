@@ -18,7 +18,7 @@ use crate::table::{self, Table};
 /// ----------
 /// model : str or os.PathLike
 ///     The name of a catalogue model (see `catalogue`), or the path of a file: URDF, MJCF, SDF, or a
-///     mechanism file in TOML.
+///     mechanism file in TOML. 'world.sdf#NAME' is one of the models of an SDF file.
 /// parameters : dict of str to float, optional
 ///     Values of parameters of a mechanism file, in place of those of the file.
 ///

@@ -65,8 +65,9 @@ pub(crate) use trajectory::PyTrajectory;
 /// length : float, optional
 ///     Characteristic length that scales linear rows (m). Default: that of the mechanism, `reach`.
 /// joint_weights : array_like, (n,), or 'inertia', optional
-///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1. 'inertia':
-///     the diagonal of the mass matrix, at the configuration of every step.
+///     Weights of joint velocities; a large one keeps a joint almost at rest. Default: 1, and 1/L^2
+///     for slides beside joints that turn, with the characteristic length L of the mechanism (not with
+///     tasks). 'inertia': the diagonal of the mass matrix, at the configuration of every step.
 /// secondary : str, list of str or dict, optional
 ///     Secondary tasks in the null space of the primary one, by name (see below), or 'none'; a dict
 ///     gives for each name a gain or a dict of parameters. Default: limit avoidance for redundant

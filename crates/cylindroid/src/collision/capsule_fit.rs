@@ -192,4 +192,35 @@ mod tests {
             );
         }
     }
+
+    /// Flights of stairs, along none of the axes from which the search starts: no direction beside
+    /// the one that is found is better.
+    #[test]
+    fn directions_beside_that_of_the_search_are_no_better() {
+        let mut seed = 11;
+        let mut worst = 0.0_f64;
+        for round in 0..200 {
+            let turn = Rotation::exp(Vec3::from_array(std::array::from_fn(|_| {
+                4.0 * uniform(&mut seed) - 2.0
+            })));
+            // Of unequal weight along the long side, so that the principal axes lean.
+            let count = 6 + round % 20;
+            let points: Vec<Vec3> = (0..count)
+                .map(|_| {
+                    let [x, y, z] = std::array::from_fn(|_| uniform(&mut seed));
+                    turn * Vec3::new(x * x, 0.6 * y + 0.5 * x, 0.3 * z * z)
+                })
+                .collect();
+            let found = around(&points);
+            let axis = found.pose.rotation * Vec3::Z;
+            let frame = Rotation::z_to(axis).unwrap();
+            for k in 0..16 {
+                let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 16.0).sin_cos();
+                let across = frame.x_axis() * cos + frame.y_axis() * sin;
+                let beside = along(&points, (axis + across * 1e-3).unit(ZERO_AXIS).unwrap());
+                worst = worst.max(1.0 - beside.volume() / found.volume());
+            }
+        }
+        assert!(worst < 1e-3, "{worst}");
+    }
 }

@@ -8,7 +8,9 @@
 //! Valid    any mechanism; lengths below MIN_LENGTH are roundings and count as zero. Where all features
 //!          meet in a point (a spherical wrist) or there is none (slides alone), the origins of the joint frames replace them, then the longest travel
 //!          of a slide, then 1 m: no length of the mechanism enters its equations then
-//! Fails    if a length is not zero, and none is as long as MIN_LENGTH
+//! Fails    if a length is not zero, none is as long as MIN_LENGTH, and the longest is not what a
+//!          rounding of a metre leaves (ROUNDED_LENGTHS): pan and tilt by `cos(pi / 2)` are a mechanism
+//!          without lengths
 //! Why so   distances between lines and points are those of the mechanism, whatever the origin and
 //!          the axes of the world, the order of the joints and the point on an axis at which a file
 //!          draws a joint; the reference point makes the centre unique
@@ -21,7 +23,9 @@ use super::link::Geometry;
 use super::mechanism::Mechanism;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Vec3};
-use crate::tolerance::{COMMON_POINT, MAX_MAGNITUDE, MIN_LENGTH, POSITION_ROUNDING};
+use crate::tolerance::{
+    COMMON_POINT, MAX_MAGNITUDE, MIN_LENGTH, POSITION_ROUNDING, ROUNDED_LENGTHS,
+};
 
 /// A line, or a point where the direction is missing.
 struct Feature {
@@ -156,7 +160,7 @@ impl Mechanism {
     }
 
     /// Refuses a mechanism that has lengths, all of them below [`MIN_LENGTH`]; short ones beside others
-    /// are roundings.
+    /// are roundings, and so are [`ROUNDED_LENGTHS`].
     pub(super) fn check_size(&self) -> Result<()> {
         let joints = self.joints().iter().flat_map(|j| [j.parent_from_joint, j.joint_from_child]);
         let loops = self.loops().iter().flat_map(|l| [l.link_a_from_joint, l.link_b_from_joint]);
@@ -177,7 +181,9 @@ impl Mechanism {
         });
         let lengths = places.map(reach_of).chain(self.travels()).chain(pitches).chain(shapes);
         let longest = lengths.fold(0.0, f64::max);
-        if longest == 0.0 || longest >= MIN_LENGTH {
+        let [least, most] = ROUNDED_LENGTHS;
+        let is_rounding = longest >= least && longest <= most;
+        if longest == 0.0 || longest >= MIN_LENGTH || is_rounding {
             return Ok(());
         }
         Err(Error::Model {

@@ -66,6 +66,6 @@ pub use parameter::Parameter;
 pub(crate) use parameter::ParameterValues;
 #[cfg(feature = "sweep")]
 pub(crate) use regular_file::open_regular_file;
-pub use regular_file::{files_read, read_regular_file};
+pub use regular_file::{check_output_file, files_read, read_regular_file};
 pub use report::{Ignored, LoadReport};
 pub use tool_choice::ToolChoice;

@@ -1,7 +1,7 @@
-//! The one way to read a file: a regular file of bounded size.
+//! The one way to read a file, a regular file of bounded size; and the check of a file that is written.
 //!
 //! Fails    a folder, device, pipe or socket; a file that is larger than the limit
-//! Why so   a device never ends, a pipe waits for its writer, and memory has an end. [`files_read`]
+//! Why so   a device never ends, a pipe waits for its writer or reader, and memory has an end. [`files_read`]
 //!          lists files here instead of in every loader, so that a loader that fails half-way has
 //!          its list as well
 //! Checked  tests/formats/limits.rs, tests/formats/load.rs::files_that_are_read_*,
@@ -59,6 +59,21 @@ pub fn read_regular_file(path: &Path, most: u64) -> Result<Vec<u8>> {
         return Err(refusal(path, message));
     }
     Ok(bytes)
+}
+
+/// Rejects a path for output that exists and is no regular file; the front ends write to no others.
+///
+/// # Errors
+/// A folder, device, pipe or socket: a pipe would wait for its reader for ever. A file that cannot be
+/// created is none; creating it says why.
+pub fn check_output_file(path: &Path) -> std::io::Result<()> {
+    let Ok(metadata) = std::fs::metadata(path) else { return Ok(()) };
+    let message = match (metadata.is_dir(), metadata.is_file()) {
+        (_, true) => return Ok(()),
+        (true, _) => "it is a folder, name a file in it",
+        _ => "it is a device, pipe or socket; name a regular file or a new one",
+    };
+    Err(std::io::Error::other(message))
 }
 
 /// Opens a regular file.

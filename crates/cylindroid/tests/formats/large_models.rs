@@ -171,7 +171,8 @@ fn long_chains_of_couplings_are_read() {
     });
     let urdf = format!("<robot name='r'><link name='l0'/>{joints}</robot>");
     assert_eq!(soon(|| read_urdf(&urdf)).unwrap().n(), 1);
-    let bodies = all(n, |i| format!("<body name='b{i}'><joint name='j{i}'/></body>"));
+    let body = |i: usize| format!("<body name='b{i}'><joint name='j{i}'/><geom size='1'/></body>");
+    let bodies = all(n, body);
     for forward in [true, false] {
         let couplings = all(n - 1, |i| {
             let (a, b) = if forward { (i, i + 1) } else { (i + 1, i) };

@@ -24,6 +24,7 @@ mod mechanism_file;
 mod mesh_masses;
 mod mjcf;
 mod mjcf_copies;
+mod mjcf_strict;
 mod mujoco;
 mod mutated_files;
 mod mutation;

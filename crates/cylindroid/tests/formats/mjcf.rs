@@ -378,7 +378,7 @@ fn what_is_broken_is_pointed_at() {
     let body = |inside: &str| world(&format!("<body name='b'>{inside}</body>"));
     check(&body("<joint type='hing'/>"), "hing", "nearest: hinge");
     check(&body("<joint axis='0 0 0'/>"), "0 0 0", "no direction");
-    check(&body("<joint range='1 -1'/>"), "1 -1", "above its upper limit");
+    check(&body("<joint range='1 -1' limited='true'/>"), "1 -1", "is not below the upper end");
     check(&body("<joint range='1'/>"), "1", "has 1 numbers, expected 2");
     check(&body("<joint pos='0 0 x'/>"), "0 0 x", "'x' is not a number");
     check(&body("<joint class='none'/>"), "none", "no default class named 'none'");
@@ -459,7 +459,7 @@ fn frames_move_all_that_they_contain() {
          <worldbody><body name='a'><frame pos='1 0 0' euler='90 0 0' childclass='c'>\
          <joint name='j' pos='0 1 0' axis='0 0 1'/><joint name='k'/>\
          <inertial pos='0 1 0' mass='1' diaginertia='1 2 3'/>\
-         <site name='s' fromto='0 0 0 0 0 2'/></frame></body></worldbody></mujoco>",
+         <site name='s' type='capsule' fromto='0 0 0 0 0 2'/></frame></body></worldbody></mujoco>",
     );
     let joint = |name: &str| m.joints().iter().find(|j| j.name == name).unwrap();
     assert!((joint("j").axis + Vec3::Y).norm() < 1e-12, "{:?}", joint("j").axis);

@@ -180,3 +180,58 @@ fn bytes_of_attached_models_that_are_not_utf8_are_noted() {
     assert!(report.contains("bytes that are not UTF-8 in"), "{report}");
     assert!(report.contains("part.xml, line 2"), "{report}");
 }
+
+/// Bodies of one large part, attached one by one in any order: each brings its own contents, in their
+/// order, and nothing else. Shapes of a world without bodies are counted as well.
+#[test]
+fn attached_bodies_bring_their_own_contents() {
+    let folder = tempfile::tempdir().unwrap();
+    let n = 300;
+    let all = |piece: &dyn Fn(usize) -> String| (0..n).map(piece).collect::<String>();
+    let bodies = all(&|i| {
+        format!(
+            "<body name='b{i}' pos='{i} 0 0'><joint name='j{i}'/><geom name='g{i}' size='1'/>\
+             <site name='s{i}'/><site name='t{i}'/><body name='c{i}'><geom size='1'/></body></body>"
+        )
+    });
+    let pairs = all(&|i| {
+        format!(
+            "<exclude body1='b{i}' body2='c{i}'/><exclude body1='b{i}' body2='b{}'/>",
+            (i + 1) % n
+        )
+    });
+    let pins = all(&|i| format!("<connect name='p{i}' body1='c{i}' anchor='0 0 0'/>"));
+    let part = format!(
+        "<mujoco><worldbody>{bodies}</worldbody><contact>{pairs}</contact>\
+         <equality>{pins}</equality></mujoco>"
+    );
+    std::fs::write(folder.path().join("part.xml"), part).unwrap();
+    let order: Vec<usize> = (0..n).map(|i| i * 7 % n).collect();
+    let attached: String =
+        order.iter().map(|i| format!("<attach model='m' body='b{i}' prefix='a{i}_'/>")).collect();
+    let main = folder.path().join("main.xml");
+    let asset = "<asset><model name='m' file='part.xml'/></asset>";
+    let text = format!("<mujoco>{asset}<worldbody>{attached}</worldbody></mujoco>");
+    std::fs::write(&main, text).unwrap();
+    let m = cylindroid::load_file(&main).unwrap();
+    assert_eq!((m.n(), m.loops().len(), m.disabled_collisions().len()), (n, n, n));
+    let joints = m.joints().iter().filter(|j| j.kind.dof() > 0).map(|j| j.name.clone());
+    assert!(joints.eq(order.iter().map(|i| format!("a{i}_j{i}"))));
+    let links = m.links().iter().skip(1).map(|l| l.name.clone());
+    assert!(links.eq(order.iter().flat_map(|i| ["b", "c"].map(|l| format!("a{i}_{l}{i}")))));
+    let frames: Vec<&str> = m.frames().iter().map(|f| f.name.as_str()).collect();
+    let sites = frames.iter().filter(|f| f.contains("_s") || f.contains("_t")).copied();
+    let expected = order.iter().flat_map(|i| ["s", "t"].map(|s| format!("a{i}_{s}{i}")));
+    assert!(sites.eq(expected), "{frames:?}");
+    // 2000 shapes a hundred and one times.
+    let ball = "<geom size='1'/>".repeat(2000);
+    let part = format!("<mujoco><worldbody>{ball}</worldbody></mujoco>");
+    std::fs::write(folder.path().join("part.xml"), part).unwrap();
+    let bodies: String = (0..101)
+        .map(|i| format!("<body name='k{i}'><joint/><attach model='m' prefix='a{i}_'/></body>"))
+        .collect();
+    let text = format!("<mujoco>{asset}<worldbody>{bodies}</worldbody></mujoco>");
+    std::fs::write(&main, text).unwrap();
+    let error = cylindroid::load_file(&main).unwrap_err().to_string();
+    assert!(error.contains("have more than 200000 shapes"), "{error}");
+}

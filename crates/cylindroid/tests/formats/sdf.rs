@@ -394,6 +394,58 @@ fn included_objects_of_a_world_are_noted_once() {
     assert!(said.contains("further <model> (box)"), "{said}");
 }
 
+/// Of several robots in a world each is read by its name, that of an `<include>` too; the report and
+/// the error say how.
+#[test]
+fn a_model_of_a_world_is_chosen_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let arm = |name: &str, joint: &str| {
+        format!(
+            "<model name='{name}'><link name='a'/><link name='b'/>\
+             <joint name='{joint}' type='revolute'><parent>a</parent><child>b</child>\
+             <axis><xyz>0 0 1</xyz></axis></joint></model>"
+        )
+    };
+    let write = |name: &str, inside: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("<sdf version='1.9'>{inside}</sdf>")).unwrap();
+        path.to_string_lossy().into_owned()
+    };
+    write("lift.sdf", &arm("lift", "l"));
+    let world = format!(
+        "<world name='w'><model name='ground'><link name='g'/></model>{}{}\
+         <include><uri>lift.sdf</uri><name>hoist</name></include></world>",
+        arm("left arm", "j"),
+        arm("right", "k"),
+    );
+    let world = write("two#arms.sdf", &world);
+    let read = |name: &str| cylindroid::load(&format!("{world}{name}"));
+    for (given, name, joint) in [
+        ("", "left arm", Some("j")),
+        ("#left arm", "left arm", Some("j")),
+        ("#right", "right", Some("k")),
+        ("#hoist", "hoist", Some("l")),
+        ("#ground", "ground", None),
+    ] {
+        let m = read(given).unwrap();
+        let found = m.joints().iter().find(|j| j.kind.dof() == 1).map(|j| j.name.as_str());
+        assert_eq!((m.name(), found), (name, joint), "{given}");
+        let said = report(&m);
+        assert!(said.contains("FILE.sdf#NAME"), "{said}");
+        for other in ["left arm", "right", "hoist", "ground"] {
+            assert_eq!(said.contains(other), other != name, "{given}: {said}");
+        }
+    }
+    let error = read("#lift").unwrap_err().to_string();
+    let says = ["no model 'lift'", "it has ground, left arm, right, hoist"];
+    assert!(says.iter().all(|part| error.contains(part)), "{error}");
+    let arm = folder.path().join("arm.urdf");
+    std::fs::write(&arm, "<robot name='r'><link name='a'/></robot>").unwrap();
+    let error = cylindroid::load(&format!("{}#r", arm.display())).unwrap_err().to_string();
+    assert!(error.contains("names a model of an SDF file"), "{error}");
+    assert!(cylindroid::load("none.sdf#r").is_err());
+}
+
 /// Nothing but nested models: the canonical link is that of the first.
 #[test]
 fn a_model_without_links_has_the_canonical_link_of_its_first_model() {

@@ -216,6 +216,26 @@ fn selectively_damped_never_exceeds_the_rate() {
     assert_close("rates", &got, &exact, 1e-16);
 }
 
+/// Singular values 4 and 3 whose joint directions lie between the two joints: the columns of J have
+/// the size 5 / sqrt(2), so that M_i = sqrt(2) (5 / sqrt(2)) / s_i, 5/4 and 5/3, and a large motion
+/// along one direction ends at 4/5 or 3/5 of the largest joint velocity; along both, the first joint
+/// ends at the whole of it and the second at the difference over the sum, 1/7.
+#[test]
+fn selectively_damped_slows_each_direction_by_what_its_joints_move() {
+    let (half, most) = (0.5_f64.sqrt(), 0.6);
+    let j = Matrix::from_rows(&[[4.0 * half, 4.0 * half], [3.0 * half, -3.0 * half]]).unwrap();
+    for (task, shares) in [
+        ([100.0, 0.0], [0.8, 0.8]),
+        ([0.0, 100.0], [0.6, -0.6]),
+        ([0.0, -100.0], [-0.6, 0.6]),
+        ([100.0, 100.0], [1.0, 1.0 / 7.0]),
+    ] {
+        let inverse = inverse::selectively_damped(&j, &task, most).unwrap();
+        let expected = shares.map(|share| share * most);
+        assert_close("rates", &inverse.matrix.mul_vec(&task), &expected, 1e-14);
+    }
+}
+
 /// At equal singular values the directions are any two: a large motion is clamped along those that
 /// are found, a small one is not and has the same rates on both sides.
 #[test]

@@ -1,5 +1,6 @@
 //! What maps take and refuse; serial arms and spatial platforms.
 
+use cylindroid::model::formats;
 use cylindroid::sweep::{LocusKind, Map, MapOptions};
 use cylindroid::{Mechanism, catalogue};
 
@@ -59,6 +60,25 @@ fn self_motions_are_one_curve() {
             let sine = q[2].sin();
             assert!((0.16 * sine * tip.x.hypot(tip.y)).abs() < 1e-8, "{q:?}");
         }
+    }
+}
+
+/// The same in other units: what rests in a self-motion is a matter of the length of the arm.
+#[test]
+fn self_motions_are_one_curve_in_every_unit() {
+    let curves = |size: f64| {
+        let text = include_str!("../../src/model/catalogue/3r.toml");
+        let text = text.replace("0.4", &format!("{:?}", 0.4 * size));
+        let arm = formats::toml::parse(&text, "3r.toml".as_ref()).unwrap();
+        let of = |from: f64, to: f64, name| axis(name, from * size, to * size, 21);
+        let map = map(&arm, vec![of(-1.01, 1.0, "x"), of(-0.52, 1.3, "z")]);
+        let loci = map.loci.iter().filter(|l| l.kind == LocusKind::TypeOne);
+        loci.map(|l| l.points.len()).collect::<Vec<_>>()
+    };
+    let own = curves(1.0);
+    assert!(own.iter().sum::<usize>() < 10_000, "{own:?}");
+    for size in [1e-4, 1e4] {
+        assert_eq!(curves(size).len(), own.len(), "{size}: {own:?}");
     }
 }
 

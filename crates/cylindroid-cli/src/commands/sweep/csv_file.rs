@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use cylindroid::model::check_output_file;
 use cylindroid::sweep::{Progress, Sweep, Table, Values};
 use cylindroid::{Error, Result};
 
@@ -30,7 +31,7 @@ pub(super) fn write(
         });
     }
     let cannot = |message: String| Error::Io { path: path.to_owned(), action: "write", message };
-    output_file::check(path).map_err(|e| cannot(e.to_string()))?;
+    check_output_file(path).map_err(|e| cannot(e.to_string()))?;
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".tmp");
     let temporary = path.with_file_name(name);

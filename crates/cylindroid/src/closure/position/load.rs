@@ -22,7 +22,8 @@ const MOST_WORK: f64 = 1e9;
 /// Loads a model: the name of a catalogue model, or the path of a file.
 ///
 /// Loops that a mechanism file closes by frames are assembled: home is the nearest configuration
-/// in which all loops are closed.
+/// in which all loops are closed. Of an SDF file with several models `world.sdf#arm` is the one named
+/// arm; without a name, the first with a joint.
 ///
 /// # Errors
 /// A name that is neither, a file that cannot be read or understood, a loop that cannot be closed.

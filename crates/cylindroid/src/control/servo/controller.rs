@@ -164,13 +164,14 @@ impl Servo {
             (DefaultLimits { acceleration, jerk }, gain.position.max(gain.orientation));
         let coordinates = chain.coordinates().iter().copied();
         let limits = limits_of_servo(mechanism, coordinates, plant, default, gain);
-        let space = TaskSpace::new(options.scaling(), &chain, &limits);
+        let joint_weights = options.weights(mechanism);
+        let space = TaskSpace::new(options.scaling(&joint_weights), &chain, &limits);
         let margin =
             |(i, l): (usize, &Limits)| BrakingMargin::new(l, options.dt, space.is_locked(i));
         let m = space.rows.len();
         let coupled = if mechanism.is_closed() {
             let locked = (0..n).filter(|&i| space.is_locked(i)).collect();
-            Some(Box::new(Coupled::new(mechanism, &options.joint_weights, locked, m)?))
+            Some(Box::new(Coupled::new(mechanism, &joint_weights, locked, m)?))
         } else {
             None
         };

@@ -305,7 +305,7 @@ mod tests {
         let actuated = (0..panda.n()).filter(|&i| panda.coordinates()[i].actuated).count();
         let limits: Vec<_> = panda.coordinates().iter().map(|c| c.limits).collect();
         let chain = Chain::of(&panda, panda.tool());
-        let space = TaskSpace::new(ServoOptions::new(&panda).scaling(), &chain, &limits);
+        let space = TaskSpace::new(ServoOptions::new(&panda).scaling(&[]), &chain, &limits);
         let method = Method::Truncated { eps: 1e-9 };
         let (mut kept, mut changed) = (0, 0);
         for _ in 0..300 {

@@ -138,3 +138,63 @@ pub(super) fn time_to_nearest(
     let time = of_task.min((ahead / all).sqrt());
     (time > 0.0 && time < f64::INFINITY).then_some(time)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::task_space::TaskScaling;
+    use super::*;
+    use crate::model::catalogue;
+    use crate::task::Task;
+
+    /// In the axes of the tool, J^T J + C is the second derivative of half of the squared error of the
+    /// position: by central differences of its gradient - J^T e. With weights of joints, one of them
+    /// locked.
+    #[test]
+    fn curvatures_in_axes_of_the_tool_are_those_of_differences() {
+        let robot = catalogue::load("panda").unwrap();
+        let mut chain = Chain::of(&robot, robot.tool());
+        let (n, length, step) = (chain.n(), 0.7, 1e-6);
+        let weights: Vec<f64> = (0..n).map(|j| 1.0 + 0.5 * j as f64).collect();
+        let mut limits = vec![Limits::NONE; n];
+        limits[2] = Limits { velocity: 0.0, ..Limits::NONE };
+        let scale = |j: usize| if j == 2 { 0.0 } else { 1.0 / weights[j].sqrt() };
+        let task = Task { axes: ReferenceFrame::Local, ..Task::POSITION };
+        let scaling = TaskScaling { task, length, joint_weights: &weights };
+        let space = TaskSpace::new(scaling, &chain, &limits);
+        let q: Vec<f64> = robot.home().iter().map(|x| x + 0.2).collect();
+        let away = Vec3::new(0.2, -0.3, 0.15);
+        let target = chain.set(&q) * away;
+        let mut jacobian = Matrix::zeros(6, n);
+        let mut gradient = |chain: &mut Chain, q: &[f64]| -> Vec<f64> {
+            let left = chain.set(q).inverse() * target;
+            chain.jacobian_into(ReferenceFrame::Local, &mut jacobian);
+            let column = |j: usize| Vec3::new(jacobian[(0, j)], jacobian[(1, j)], jacobian[(2, j)]);
+            (0..n).map(|j| -scale(j) * column(j).dot(left) / (length * length)).collect()
+        };
+        let mut slopes = Vec::new();
+        for i in 0..n {
+            let (mut ahead, mut behind) = (q.clone(), q.clone());
+            ahead[i] += step;
+            behind[i] -= step;
+            let pairs = gradient(&mut chain, &ahead).into_iter().zip(gradient(&mut chain, &behind));
+            slopes.push(pairs.map(|(a, b)| scale(i) * (a - b) / (2.0 * step)).collect::<Vec<_>>());
+        }
+        chain.set(&q);
+        let mut hessian = vec![Matrix::zeros(6, n); n];
+        let mut found = Matrix::zeros(n, n);
+        let left = away.to_array().map(|e| e / length);
+        curvature_into((&chain, &space), &mut hessian, &left, &mut found);
+        chain.jacobian_into(ReferenceFrame::Local, &mut jacobian);
+        for i in 0..n {
+            for j in 0..n {
+                let both: f64 = (0..3).map(|k| jacobian[(k, i)] * jacobian[(k, j)]).sum();
+                let expected = slopes[i][j] - scale(i) * scale(j) * both / (length * length);
+                assert!(
+                    (found[(i, j)] - expected).abs() < 1e-8,
+                    "{i}, {j}: {} {expected}",
+                    found[(i, j)]
+                );
+            }
+        }
+    }
+}

@@ -456,4 +456,29 @@ mod tests {
         let bounds = VelocityBounds::next(&Limits::NONE, now, 0.01);
         assert_eq!((bounds.lower, bounds.upper), (f64::NEG_INFINITY, f64::INFINITY));
     }
+
+    /// The same within some roundings of limits far from zero: what is kept free grows with them.
+    #[test]
+    fn the_margin_keeps_free_what_the_bounds_do() {
+        let (mut clear, dt) = (0, 1e-3);
+        for size in [1.0, 30.0, 1e6] {
+            let limits = Limits { lower: -size, upper: size, ..Limits::NONE };
+            let margin = BrakingMargin::new(&limits, dt, false);
+            let rounding = size * f64::EPSILON;
+            for (steps, sign) in (0..100).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+                let position = sign * (size - f64::from(steps) * rounding);
+                let now = JointState { position, velocity: 0.0, acceleration: 0.0 };
+                let bounds = VelocityBounds::next(&limits, now, dt);
+                for way in 0..500 {
+                    let rate = sign * 0.1 * f64::from(way) * rounding / dt;
+                    if margin.allows(now, rate) {
+                        clear += 1;
+                        let free = bounds.contains(rate) && bounds.met(rate).is_none();
+                        assert!(free, "{rate} in {bounds:?} at {now:?}");
+                    }
+                }
+            }
+        }
+        assert!(clear > 1000, "{clear}");
+    }
 }

@@ -2,6 +2,8 @@
 //!
 //! Checked  tests/it/servo/steps.rs, tests/it/servo/limits.rs
 
+use std::borrow::Cow;
+
 use super::plant::Plant;
 use super::projection::{ProjectionChoice, TaskProjection};
 use super::secondary::SecondaryTask;
@@ -75,8 +77,9 @@ pub struct ServoOptions {
     pub largest_projection: f64,
     /// Characteristic length that scales the linear rows (m).
     pub length: f64,
-    /// A weight for each coordinate of the mechanism (a large weight keeps it still); empty for
-    /// none.
+    /// A weight for each coordinate of the mechanism (a large weight keeps it still) [-, or 1/m^2 of
+    /// a length]; empty for 1, and for 1/L^2 of slides beside joints that turn, with the
+    /// characteristic length L of the mechanism.
     pub joint_weights: Vec<f64>,
     /// Weights from the masses of the model in place of `joint_weights`: the diagonal of the mass
     /// matrix, evaluated at the configuration of every step.
@@ -162,9 +165,20 @@ impl ServoOptions {
     }
 
     /// The scales of the task space.
-    pub(super) fn scaling(&self) -> TaskScaling<'_> {
+    pub(super) fn scaling<'a>(&self, joint_weights: &'a [f64]) -> TaskScaling<'a> {
         let (task, length) = (self.task, self.length);
-        TaskScaling { task, length, joint_weights: &self.joint_weights }
+        TaskScaling { task, length, joint_weights }
+    }
+
+    /// The weights of the coordinates. By default those of slides among joints that turn are 1/L^2, so
+    /// that the motion depends on no unit of length; empty where all are one.
+    pub(super) fn weights(&self, mechanism: &Mechanism) -> Cow<'_, [f64]> {
+        let all = mechanism.coordinates();
+        let slides = all.iter().filter(|c| c.kind.is_length()).count();
+        if !self.joint_weights.is_empty() || slides == 0 || slides == all.len() {
+            return Cow::Borrowed(&self.joint_weights);
+        }
+        (0..all.len()).map(|i| mechanism.unit_of(i).powi(-2)).collect()
     }
 
     /// The projection and its fallback.

@@ -386,7 +386,11 @@ fn way_with(levers: &[f64], change: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::collision::CollisionOptions;
+    use crate::control::tasks::options::TaskServoOptions;
+    use crate::model::{Collision, Geometry, JointKind, JointSpec, Link};
     use crate::scalar::uniform;
+    use crate::spatial::{Pose, Vec3};
 
     /// The positions of a joint that brakes, step by step, relative to the start.
     fn simulated(velocity: f64, acceleration: f64, limits: &Limits, dt: f64) -> Vec<f64> {
@@ -439,5 +443,51 @@ mod tests {
             }
         }
         assert!(turns > 50, "{turns}");
+    }
+
+    /// A path is that of the last step where the obstacles are the same and no body is off by more than
+    /// half of the gap, whichever joints put it there.
+    #[test]
+    fn a_path_is_continued_where_the_robot_is_nearly_where_it_was_to_be() {
+        let mut builder = Mechanism::builder("slides");
+        let ball = Geometry::Sphere { radius: 0.1 };
+        let shape = Collision { geometry: ball.clone(), ..Collision::default() };
+        builder.link(Link { collisions: vec![shape], ..Link::named("ball") });
+        builder.joint(JointSpec::new("x", JointKind::Prismatic, "base", "beam"));
+        builder.joint(JointSpec::new("y", JointKind::Prismatic, "beam", "ball"));
+        let robot = builder.build().unwrap();
+        let limits: Vec<Limits> = robot.coordinates().iter().map(|c| c.limits).collect();
+        let options = TaskServoOptions::new(&robot);
+        let motions = Motions::new(&robot, &options, &limits).unwrap();
+        let mut model = CollisionModel::new(&robot, &CollisionOptions::default()).unwrap();
+        model.add_obstacle("ball", &ball, Pose::from_translation(Vec3::Z * 9.0)).unwrap();
+        let gap = 0.02;
+        let mut collisions = CollisionAvoidance { model, gap, margin: 0.1 };
+        let mut path = BrakingPath::new(&robot, &motions, 1).unwrap();
+        let start = [0.3, -0.2];
+        path.expected.copy_from_slice(&start);
+        path.revision = collisions.model.revision();
+        for (x, y, expected) in [
+            (0.0, 0.0, true),
+            (0.49, 0.0, true),
+            (-0.3, -0.19, true),
+            (0.0, 0.51, false),
+            (0.3, -0.21, false),
+            (-0.51, 0.0, false),
+        ] {
+            let state = robot.state(&[start[0] + x * gap, start[1] + y * gap]).unwrap();
+            path.is_clear = true;
+            assert_eq!(path.is_continued(&state, &collisions), expected, "{x} {y}");
+            path.is_clear = false;
+            assert!(!path.is_continued(&state, &collisions));
+        }
+        path.is_clear = true;
+        let state = robot.state(&start).unwrap();
+        collisions.model.move_obstacle("ball", Pose::from_translation(Vec3::Z * 8.0)).unwrap();
+        assert!(!path.is_continued(&state, &collisions));
+        path.revision = collisions.model.revision();
+        assert!(path.is_continued(&state, &collisions));
+        path.reset();
+        assert!(!path.is_continued(&state, &collisions));
     }
 }

@@ -45,15 +45,27 @@ fn found(folder: &Path, name_or_path: &str) -> Result<Option<PathBuf>> {
     if catalogue::names().contains(&name_or_path) {
         return Ok(None);
     }
-    let path = Path::new(name_or_path);
+    let path = folder.join(name_or_path);
+    let (file, _) = file_and_model(&path);
     let looks_like_a_path = name_or_path.contains(['/', '\\'])
-        || extension(path).is_some_and(|e| EXTENSIONS.contains(&e.as_str()));
-    let path = folder.join(path);
-    if looks_like_a_path || path.exists() {
+        || extension(&file).is_some_and(|e| EXTENSIONS.contains(&e.as_str()));
+    if looks_like_a_path || file.exists() {
         return Ok(Some(path));
     }
     let names = catalogue::names().iter().copied();
     Err(Error::unknown("catalogue model or file", name_or_path, names))
+}
+
+/// The file of a path, and the name of the model in it that a path such as `world.sdf#arm` asks for;
+/// a `#` may belong to the name of a file.
+fn file_and_model(path: &Path) -> (Cow<'_, Path>, Option<&str>) {
+    let parts = path.to_str().and_then(|text| text.rsplit_once('#'));
+    match parts {
+        Some((file, model)) if !path.exists() && Path::new(file).exists() => {
+            (Path::new(file).into(), Some(model))
+        }
+        _ => (path.into(), None),
+    }
 }
 
 /// Loads a model file, by its extension and content.
@@ -96,7 +108,26 @@ fn read_file(
     nesting: Nesting,
     close: CloseHome<'_>,
 ) -> Result<Mechanism> {
+    let given_path = path;
+    let (path, model) = file_and_model(given_path);
+    let path = &*path;
     let file = text_file::read(path)?;
+    if let Some(model) = model {
+        return match xml_limits::root(&file.text) {
+            Some("sdf" | "gazebo") => {
+                if let Some((name, _)) = given.first() {
+                    return Err(toml::none(name, &shown(path)));
+                }
+                let mechanism = sdf::parse_model(&file.text, path, Some(model))?;
+                Ok(noted(mechanism, file.note()))
+            }
+            _ => Err(Error::InvalidOption {
+                option: "model file",
+                value: shown(given_path),
+                reason: "#NAME names a model of an SDF file, and this file is none".to_owned(),
+            }),
+        };
+    }
     if is_mechanism_file(path) {
         let loader = |from: &Path, name: &str, nesting, values: ParameterValues<'_>| {
             load_from(from, name, values, nesting, close)
@@ -128,10 +159,15 @@ fn read_file(
             });
         }
     };
-    Ok(match note {
+    Ok(noted(mechanism, note))
+}
+
+/// With the note of how a text was read.
+fn noted(mechanism: Mechanism, note: Option<(usize, &'static str, &'static str)>) -> Mechanism {
+    match note {
         None => mechanism,
         Some((line, what, why)) => mechanism.noting(line, what, why),
-    })
+    }
 }
 
 /// Reads XML by its root element; unknown ones go to the URDF reader, which reports the element.

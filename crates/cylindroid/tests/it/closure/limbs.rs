@@ -1,8 +1,9 @@
 //! The screw systems of limbs.
 
 use cylindroid::closure::{ClosedChain, LimbScrews};
+use cylindroid::model::{JointKind, JointSpec, Mimic};
 use cylindroid::screws::{ScrewOptions, ScrewSystem};
-use cylindroid::{Mechanism, catalogue};
+use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
 fn linkage(name: &str) -> Mechanism {
     let file = format!("{}/tests/data/linkages/{name}.toml", env!("CARGO_MANIFEST_DIR"));
@@ -114,4 +115,32 @@ fn a_serial_arm_is_one_limb() {
     assert!(found.limbs[0].serial && found.limbs[0].joints.len() == 6);
     assert_eq!((found.twists.order(), found.constraint.order()), (6, 0));
     assert_eq!(found.limbs[0].actuation.order(), 6);
+}
+
+/// A finger beyond the platform that follows a joint of the limb belongs to it: no path from the
+/// ground to the platform has all of its joints. Without the coupling the limb is that path.
+#[test]
+fn a_limb_with_a_finger_that_follows_its_joint_is_no_path() {
+    let arm = |follows: bool| {
+        let mut builder = Mechanism::builder("arm with a finger");
+        for (name, parent, child) in
+            [("a", "base", "l1"), ("b", "l1", "hand"), ("f", "hand", "finger")]
+        {
+            let mimic = Mimic { joint: "b".to_owned(), multiplier: 0.5, offset: 0.0 };
+            builder.joint(JointSpec {
+                parent_from_joint: Pose::from_translation(Vec3::X * 0.3),
+                mimic: (follows && name == "f").then_some(mimic),
+                ..JointSpec::new(name, JointKind::Revolute, parent, child)
+            });
+        }
+        builder.frame("palm", "hand", Pose::IDENTITY).reference("palm");
+        builder.build().unwrap()
+    };
+    for (follows, joints) in [(false, &["a", "b"][..]), (true, &["a", "b", "f"])] {
+        let found = screws(&arm(follows));
+        assert_eq!(found.limbs.len(), 1);
+        assert_eq!(found.limbs[0].serial, !follows);
+        assert_eq!(found.limbs[0].joints, joints);
+        assert_eq!(found.twists.order(), 2);
+    }
 }

@@ -1,9 +1,9 @@
 //! The characteristic length: of every mechanism, whatever the frame, order and drawn points.
 
-use cylindroid::Mechanism;
-use cylindroid::catalogue;
+use cylindroid::linalg::Svd;
 use cylindroid::model::{Geometry, JointKind, JointSpec, Limits, Visual};
 use cylindroid::spatial::{Pose, Rotation, Vec3};
+use cylindroid::{Mechanism, ReferenceFrame, catalogue};
 
 use crate::support::assert_close;
 
@@ -109,10 +109,39 @@ fn roundings_are_no_lengths() {
     assert!(pan_and_tilt(0.0, 0.0).unwrap().reach() == 1.0);
 }
 
+/// What sums and sines of metres leave is no length either where there is no other; a report of the
+/// extent is that of a mechanism without lengths.
+#[test]
+fn roundings_alone_are_no_lengths() {
+    let half_turn = std::f64::consts::PI;
+    let residues = [
+        (0.5 * half_turn).cos(),
+        0.3 * half_turn.sin(),
+        0.1 + 0.2 - 0.3,
+        1.0 - 0.9 - 0.1,
+        1e-15,
+        -1e-17,
+    ];
+    for residue in residues {
+        let plain = pan_and_tilt(0.0, 0.0).unwrap();
+        for (rounding, tool) in [(residue, 0.0), (0.0, residue), (residue, residue)] {
+            let head = pan_and_tilt(rounding, tool).unwrap();
+            assert!(head.reach() == 1.0, "{residue:e}: {}", head.reach());
+            let q = [0.3, -0.4];
+            let turn = |m: &Mechanism| {
+                let state = m.state(&q).unwrap();
+                let jacobian = state.jacobian(m.tool(), ReferenceFrame::World).unwrap();
+                Svd::of(&jacobian).rank(1e-9).rank
+            };
+            assert_eq!(turn(&head), turn(&plain), "{residue:e}");
+        }
+    }
+}
+
 /// Lengths that are all too short are those of another unit.
 #[test]
 fn mechanisms_without_a_size_are_refused() {
-    for (rounding, tool) in [(6.1e-17, 0.0), (1e-30, 2e-30), (0.0, 5e-324), (0.0, -9e-13)] {
+    for (rounding, tool) in [(1.1e-15, 0.0), (1e-30, 2e-30), (0.0, 5e-324), (0.0, -9e-13)] {
         let error = pan_and_tilt(rounding, tool).unwrap_err();
         let longest = format!("longest length is {:e} m", f64::max(rounding, tool.abs()));
         let message = error.to_string();
@@ -121,7 +150,7 @@ fn mechanisms_without_a_size_are_refused() {
     // A shape is a length too.
     let mut b = Mechanism::builder("ball");
     b.joint(JointSpec {
-        parent_from_joint: Pose::from_translation(Vec3::X * 6.1e-17),
+        parent_from_joint: Pose::from_translation(Vec3::X * 6.1e-14),
         ..JointSpec::new("turn", JointKind::Revolute, "base", "ball")
     });
     assert!(b.clone().build().is_err());

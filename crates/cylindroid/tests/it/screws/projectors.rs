@@ -264,6 +264,45 @@ fn the_chosen_pitch_is_the_best() {
     assert!(!choice.attained && choice.norm_at_infinity.is_infinite());
 }
 
+/// A screw of pitch p has |P_h|^2 = 1 - p x + (1 + p^2) x^2 / 4 with x = 1 / (p - h), in units of the
+/// length: 1 at x = 2 p / (1 + p^2), and sqrt(1 + p^2) in the limit.
+#[test]
+fn the_limit_is_chosen_where_it_is_as_small_to_a_millionth() {
+    let choice = |p: f64| {
+        let screw = Twist { linear: Vec3::Z * p, angular: Vec3::Z };
+        let system = ScrewSystem::of(&[screw], &ScrewOptions::with_length(1.0)).unwrap();
+        let choice = system.choose_pitch();
+        let limit = (1.0 + p * p).sqrt();
+        assert!((choice.norm_at_infinity - limit).abs() < 1e-12, "{choice:?}");
+        choice
+    };
+    // 0.85 and 1.2 millionths above the smallest; a fifth and a quarter.
+    for (p, is_limit) in [(1.3e-3, true), (1.55e-3, false), (0.66, false), (0.75, false)] {
+        for p in [p, -p] {
+            let found = choice(p);
+            assert!(found.attained && found.norm < 1.0 + 1e-6, "{p}: {found:?}");
+            let best = p - (1.0 + p * p) / (2.0 * p);
+            match found.pitch {
+                Some(f64::INFINITY) => assert!(is_limit, "{p}"),
+                Some(h) => {
+                    assert!(!is_limit && found.norm < 1.0 + 1e-9, "{p}: {h} {}", found.norm);
+                    // The norm is flat there: its root of rounding.
+                    let flat = 1e-4 * best.abs().max(1.0);
+                    assert!((h - best).abs() < flat * best.abs().max(1.0), "{p}: {h} {best}");
+                }
+                None => panic!("{p}: {found:?}"),
+            }
+        }
+    }
+    // The whole space: all projectors are the identity, and none is smaller.
+    let all: Vec<Twist> = (0..6)
+        .map(|i| Twist::from_array(std::array::from_fn(|j| f64::from(u8::from(i == j)))))
+        .collect();
+    let whole = ScrewSystem::of(&all, &ScrewOptions::with_length(1.0)).unwrap().choose_pitch();
+    assert!((whole.norm - 1.0).abs() < 1e-12 && whole.attained, "{whole:?}");
+    assert_eq!(whole.pitch, Some(f64::INFINITY));
+}
+
 #[test]
 fn reciprocal_of_reciprocal() {
     cases(29, 9, |random, case| {

@@ -205,3 +205,43 @@ fn arms_with_balls_come_to_rest_at_the_edge() {
     assert!(matches!(motion.stall, Some(Stall::OutOfReach { .. })), "{motion:?}");
     assert!(motion.time < 20.0, "{motion:?}");
 }
+
+/// An arm of slides and hinges goes the same way to the same target in every unit of length, without
+/// weights as well: the inverses see no length but that of the mechanism. Of units that are powers of
+/// two, so that nothing is rounded in another way: the step in which a joint begins to brake would be
+/// another one.
+#[test]
+fn the_way_of_an_arm_on_a_slide_depends_on_no_unit() {
+    let way = |size: f64, method: Method| {
+        let robot = arm_on_a_slide(Pose::IDENTITY, size);
+        let task = Task::POSITION;
+        let mut options = ServoOptions { dt: 5e-3, task, method, ..ServoOptions::new(&robot) };
+        options.tolerance.position *= size;
+        let mut servo = Servo::new(&robot, options).unwrap();
+        let (mut q, goal) =
+            ([0.1 * size, 0.3, -0.4, 0.2, 0.1], [-0.15 * size, 0.2, 0.1, -0.2, 0.35]);
+        let target = robot.state(&goal).unwrap().pose(robot.tool()).unwrap();
+        let mut way = Vec::new();
+        for _ in 0..4000 {
+            let status = servo.step(&q, target).unwrap().status;
+            servo.advance(&mut q);
+            way.push([q[0] / size, q[1], q[2], q[3], q[4]]);
+            if status == Status::Reached {
+                break;
+            }
+        }
+        way
+    };
+    for method in Method::ALL {
+        let (own, what) = (way(1.0, method), method.name());
+        assert!(own.len() < 4000, "{what}");
+        for size in [-20, -10, 5, 20].map(|k| 2.0_f64.powi(k)) {
+            let other = way(size, method);
+            assert_eq!(own.len(), other.len(), "{what} at {size}");
+            for (step, (a, b)) in own.iter().zip(&other).enumerate() {
+                let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart < 1e-6, "{what} at {size}: step {step}, {apart:e}");
+            }
+        }
+    }
+}

@@ -33,6 +33,24 @@ fn stall_at_a_limit_names_the_joint() {
     assert!(outcome.limits_hit.contains(&(0, LimitKind::Position)));
 }
 
+/// Whether a limit blocks a motion is a matter of directions: the joint is named however little the
+/// target lies beyond it.
+#[test]
+fn stall_at_a_limit_names_the_joint_for_small_errors_too() {
+    let robot = planar(2);
+    for beyond in [1e-2, 1e-4, 1e-6] {
+        let mut servo = servo(&robot, |o| {
+            o.task = Task::POSITION;
+            o.tolerance.position = 1e-3 * beyond;
+        });
+        let (a, b): (f64, f64) = (3.0 + beyond, 0.5);
+        let at = Vec3::new(a.cos() + (a + b).cos(), a.sin() + (a + b).sin(), 0.0);
+        let outcome = run_checked(&robot, &mut servo, &[2.9, 0.5], Pose::from_translation(at));
+        assert!(!outcome.reached, "{beyond}");
+        assert_eq!(outcome.stall, Some(Stall::Limits { coordinates: vec![0] }), "{beyond}");
+    }
+}
+
 /// Folded, with the target in the hole of the workspace: no joint can start the motion, and none of
 /// second order leads there.
 #[test]

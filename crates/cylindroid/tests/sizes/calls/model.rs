@@ -86,6 +86,7 @@ calls! {
     model::catalogue::entries;
     model::catalogue::load;
     model::catalogue::names;
+    model::check_output_file;
     model::files_read = |path: &'static Path| model::files_read(|| model::read_regular_file(path, 1));
     model::formats::dh::joints;
     model::formats::mjcf::parse;

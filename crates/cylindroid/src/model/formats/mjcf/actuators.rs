@@ -86,7 +86,7 @@ impl<'d> Mjcf<'d> {
         self.reader.unread_attributes(node, &used(tag));
         let joint = self.joint_named(node, attribute)?;
         let element: Element<'d> = self.defaults.of(&self.reader, node, 0, &ACTUATORS)?;
-        let gears = element.list(&self.reader, "gear")?.unwrap_or_default();
+        let gears = element.list(&self.reader, "gear", 6)?.unwrap_or_default();
         let gear = gears.first().copied();
         if gears.iter().skip(1).any(|x| *x != 0.0) {
             let why =
@@ -95,10 +95,13 @@ impl<'d> Mjcf<'d> {
             self.reader.note(place, format!("attribute 'gear' of <{tag}>"), why, &name);
         }
         // The control of a motor is its force; the force of other kinds is in forcerange.
-        let range = match element.vector::<2>(&self.reader, "forcerange")? {
-            None if tag == "motor" => element.vector::<2>(&self.reader, "ctrlrange")?,
-            range => range,
-        };
+        let of_force = ["forcerange", "forcelimited"];
+        let mut range = self.compiler.range(&mut self.reader, &element, of_force, &name)?;
+        if tag == "motor" {
+            let of_control = ["ctrlrange", "ctrllimited"];
+            let control = self.compiler.range(&mut self.reader, &element, of_control, &name)?;
+            range = range.or(control);
+        }
         if let Some([lower, upper]) = range {
             let most = lower.abs().max(upper.abs()) * gear.unwrap_or(1.0).abs();
             let effort = &mut self.joints[joint].limits.effort;
@@ -120,7 +123,9 @@ impl<'d> Mjcf<'d> {
         }
         let Some(home) = home else { return Ok(()) };
         self.reader.unread_attributes(home, &["name", "qpos"]);
-        let Some(qpos) = Element::bare(home).list(&self.reader, "qpos")? else { return Ok(()) };
+        let Some(qpos) = Element::bare(home).list(&self.reader, "qpos", usize::MAX)? else {
+            return Ok(());
+        };
         let size = |kind: JointKind| match kind {
             JointKind::Free => 7,
             JointKind::Spherical => 4,

@@ -5,7 +5,8 @@
 //! Why so   the other model is read by itself, with its own settings and default classes. Its
 //!          constraints, actuators and excluded contacts come along if all their bodies do, as in
 //!          MuJoCo; its key frames do not
-//! Fails    more than [`MOST_MODELS`] models, or [`DEEPEST_MODEL`] of them inside one another
+//! Fails    more than [`MOST_MODELS`] models, or [`DEEPEST_MODEL`] of them inside one another; more than
+//!          [`MOST_SHAPES`] attached shapes
 //! Source   mujoco.readthedocs.io, XML reference, attach, asset/model
 //! Checked  tests/formats/mjcf_copies.rs::attached_*
 
@@ -18,7 +19,7 @@ use super::Mjcf;
 use super::attributes::used;
 use super::copies::{Kind, Placed};
 use super::files;
-use super::part::{Nesting, Part, Subtree, report_of_parts};
+use super::part::{ByLink, Nesting, Part, Subtree, report_of_parts};
 use crate::error::{Error, Result, shown};
 use crate::model::formats::text_file;
 use crate::model::{Collision, JointKind, Link, LoadReport, LoopJointSpec, Visual};
@@ -26,6 +27,8 @@ use crate::spatial::{Pose, Rotation, Vec3};
 
 const MOST_MODELS: usize = 100;
 const DEEPEST_MODEL: usize = 10;
+/// Shapes that all `<attach>` of a model bring.
+const MOST_SHAPES: usize = 200_000;
 
 impl<'d> Mjcf<'d> {
     /// Reads the models that this one may attach.
@@ -80,6 +83,13 @@ impl<'d> Mjcf<'d> {
         self.reader.report(&self.files.roots(), &mut report);
         report_of_parts(&self.attachable, &mut report);
         Part {
+            by_link: ByLink::of(
+                &self.links,
+                &self.sites,
+                &self.disabled_collisions,
+                &self.loops,
+                &self.first_joint,
+            ),
             links: self.links,
             joints: self.joints,
             loops: self.loops,
@@ -114,9 +124,8 @@ impl<'d> Mjcf<'d> {
     pub(super) fn attached_names(&self, node: Node<'d, 'd>) -> Result<Vec<(Kind, String)>> {
         let (part, tree, prefix) = self.part_of(node)?;
         let joints = part.joints[tree.joints.clone()].iter().map(|j| (Kind::Joint, &j.name));
-        let sites = part.sites.iter().filter(|s| tree.links.contains(&s.1) || tree.is_whole);
-        let all = tree.links.iter().map(|l| (Kind::Body, l)).chain(joints);
-        let all = all.chain(sites.map(|s| (Kind::Site, &s.0)));
+        let sites = tree.sites(&part).into_iter().map(|i| (Kind::Site, &part.sites[i].0));
+        let all = tree.links.iter().map(|l| (Kind::Body, l)).chain(joints).chain(sites);
         Ok(all.map(|(kind, name)| (kind, format!("{prefix}{name}"))).collect())
     }
 
@@ -127,6 +136,11 @@ impl<'d> Mjcf<'d> {
         let (part, tree, prefix) = self.part_of(node)?;
         let name = |own: &str| format!("{prefix}{own}{}", placed.suffix);
         self.reader.check_links(node, self.links.len() + tree.links.len())?;
+        self.attached_shapes += tree.shapes(&part);
+        if self.attached_shapes > MOST_SHAPES {
+            let message = format!("the attached models have more than {MOST_SHAPES} shapes");
+            return Err(self.reader.refuse(node, "model", message));
+        }
         let joints = &part.joints[tree.joints.clone()];
         let own_joints: BTreeSet<&str> = joints.iter().map(|j| j.name.as_str()).collect();
         let first = self.joints.len();
@@ -171,13 +185,13 @@ impl<'d> Mjcf<'d> {
             }
             self.joints.push(own);
         }
-        for (body, index) in part.first_joint.iter().filter(|f| tree.joints.contains(f.1)) {
+        for (index, body) in part.by_link.bodies.range(tree.joints.clone()) {
             self.first_joint.insert(name(body), first + index - tree.joints.start);
         }
         let at = |part: &Part, link: &str| part.world.get(link).copied().unwrap_or_default();
         let here = self.world.get(parent).copied().unwrap_or_default();
         let world_from_base = here * place * at(&part, &tree.base).inverse();
-        for link in part.links.iter().filter(|l| tree.links.contains(&l.name)) {
+        for link in part.by_link.links.at(&tree.links).into_iter().map(|i| &part.links[i]) {
             let mut own = Link { name: name(&link.name), ..link.clone() };
             rename(&mut own.visuals, &mut own.collisions, &name);
             self.world.insert(own.name.clone(), world_from_base * at(&part, &link.name));
@@ -191,24 +205,21 @@ impl<'d> Mjcf<'d> {
                 self.reader.note(node, "geoms of an attached world", why, parent);
             }
         }
-        for (site, link, pose) in &part.sites {
+        for (site, link, pose) in tree.sites(&part).into_iter().map(|i| &part.sites[i]) {
             if tree.links.contains(link) {
                 self.sites.push((name(site), name(link), *pose));
             } else if tree.is_whole {
                 self.sites.push((name(site), parent.to_owned(), place * *pose));
             }
         }
-        for pair in &part.disabled_collisions {
+        let pairs = part.by_link.pairs.at(&tree.links);
+        for pair in pairs.into_iter().map(|i| &part.disabled_collisions[i]) {
             if pair.iter().all(|link| tree.links.contains(link)) {
                 self.disabled_collisions.push([name(&pair[0]), name(&pair[1])]);
             }
         }
-        for joint in &part.loops {
+        for joint in part.by_link.loops.at(&tree.links).into_iter().map(|i| &part.loops[i]) {
             let ends = [(&joint.a, joint.link_a_from_joint), (&joint.b, joint.link_b_from_joint)];
-            let inside = ends.map(|(link, _)| tree.links.contains(link));
-            if inside == [false, false] {
-                continue;
-            }
             let ends = ends.map(|(link, pose)| match tree.links.contains(link) {
                 true => Some((name(link), pose)),
                 false if tree.is_whole => Some((parent.to_owned(), place * pose)),
@@ -244,7 +255,8 @@ impl<'d> Mjcf<'d> {
         place: Pose,
         name: &impl Fn(&str) -> String,
     ) {
-        let Some(link) = self.links.iter_mut().find(|l| l.name == parent) else { return };
+        let index = self.link_index.get(parent).copied().unwrap_or(0);
+        let Some(link) = self.links.get_mut(index) else { return };
         let (mut visuals, mut collisions) = (world.visuals.clone(), world.collisions.clone());
         rename(&mut visuals, &mut collisions, name);
         for pose in visuals

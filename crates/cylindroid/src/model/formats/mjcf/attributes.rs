@@ -26,16 +26,27 @@ pub(super) fn used(element: &str) -> Vec<&'static str> {
             "ref",
             "armature",
             "actuatorfrcrange",
+            "actuatorfrclimited",
         ],
         "body" | "frame" => &["name", "childclass"],
         "attach" => &["model", "body", "prefix"],
         "model" => &["name", "file"],
         "replicate" => &["count", "offset", "sep", "childclass"],
         "inertial" => &["mass", "diaginertia", "fullinertia"],
-        "motor" => &["name", "class", "joint", "jointinparent", "gear", "forcerange", "ctrlrange"],
+        "motor" => &[
+            "name",
+            "class",
+            "joint",
+            "jointinparent",
+            "gear",
+            "forcerange",
+            "forcelimited",
+            "ctrlrange",
+            "ctrllimited",
+        ],
         "general" | "position" | "velocity" | "intvelocity" | "damper" | "cylinder" | "muscle"
         | "dcmotor" | "adhesion" => {
-            &["name", "class", "joint", "jointinparent", "gear", "forcerange"]
+            &["name", "class", "joint", "jointinparent", "gear", "forcerange", "forcelimited"]
         }
         "equality" => &EQUALITY,
         "geom" => &[
@@ -78,12 +89,13 @@ pub(super) fn why_unused(name: &str) -> &'static str {
         "friction" | "condim" | "solref" | "solimp" | "margin" | "gap" | "priority" | "solmix"
         | "contact" | "fluidshape" | "fluidcoef" => "contacts of the simulation are not used",
         "option" | "visual" | "statistic" | "sensor" | "custom" | "extension" | "plugin"
-        | "actuatorfrclimited" | "user" => "settings of the simulator are not used",
+        | "user" => "settings of the simulator are not used",
         "rgba" | "material" | "type" | "size" | "group" => "it is not drawn",
-        "ctrlrange" | "ctrllimited" | "forcelimited" | "kp" | "kv" | "dampratio" | "timeconst"
-        | "gaintype" | "biastype" | "gainprm" | "biasprm" | "dyntype" | "dynprm" | "actdim"
-        | "inheritrange" | "actlimited" | "actrange" | "lengthrange" | "delay" | "nsample"
-        | "interp" => "control of the simulation is not used",
+        "ctrlrange" | "ctrllimited" | "kp" | "kv" | "dampratio" | "timeconst" | "gaintype"
+        | "biastype" | "gainprm" | "biasprm" | "dyntype" | "dynprm" | "actdim" | "inheritrange"
+        | "actlimited" | "actrange" | "lengthrange" | "delay" | "nsample" | "interp" => {
+            "control of the simulation is not used"
+        }
         "solreffix" | "torquescale" => "settings of the simulator are not used",
         "camera" | "light" | "texture" | "hfield" | "skin" => "it is not drawn",
         "tendon" | "deformable" | "flexcomp" | "composite" => {

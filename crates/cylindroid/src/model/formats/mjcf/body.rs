@@ -92,8 +92,10 @@ impl<'d> Mjcf<'d> {
         let inside = self.inside(node, childclass, &placed.suffix)?;
         let pose = placed.place * self.compiler.pose(&self.reader, &Element::bare(node))?;
         self.joints_of(&parent, &name, pose, &inside.joints, top)?;
+        self.note_motions_of(node, &name, inside.joints.len());
         let world = self.world.get(&parent).copied().unwrap_or_default() * pose;
         self.world.insert(name.clone(), world);
+        self.link_index.insert(name.clone(), self.links.len());
         self.links.push(Link::named(&name));
         self.furnish(self.links.len() - 1, &inside)?;
         push(stack, &name, inside.bodies, false);
@@ -119,8 +121,13 @@ impl<'d> Mjcf<'d> {
                 "joint" | "freejoint" => inside.joints.push(placed),
                 "geom" => inside.geoms.push(placed),
                 "site" => inside.sites.push(placed),
-                "inertial" if inside.inertial.is_none() => {
-                    inside.inertial = Some((child, placed.place));
+                "inertial" => {
+                    if inside.inertial.replace((child, placed.place)).is_some() {
+                        let owner = self.reader.owner(child).to_owned();
+                        let message = format!("body '{owner}' has two <inertial>");
+                        let tag = crate::model::formats::xml::Reader::tag(child);
+                        return Err(self.reader.error(child, tag, message, "leave one of them"));
+                    }
                 }
                 "replicate" => {
                     let copies = self.replicas(&placed)?;
@@ -171,7 +178,8 @@ impl<'d> Mjcf<'d> {
                 continue;
             };
             let mut on_frame = self.compiler.pose(&self.reader, &element)?;
-            if let Some((between, _)) = element.between(&self.reader)? {
+            let kind = element.text("type").unwrap_or("sphere");
+            if let Some((between, _)) = element.between(&self.reader, kind)? {
                 on_frame = between;
             }
             self.sites.push((name, link.name.clone(), *place * on_frame));
@@ -287,26 +295,21 @@ impl<'d> Mjcf<'d> {
                 return Err(element.refuse(reader, "axis", message));
             }
         }
-        if let Some([lower, upper]) = element.vector::<2>(reader, "range")? {
-            let limited = match element.text("limited") {
-                Some("true") => true,
-                Some("false") => false,
-                _ => self.compiler.autolimits,
-            };
-            if limited && one {
-                if lower > upper {
-                    let message = format!(
-                        "joint '{name}' has lower limit {lower} above its upper limit {upper}"
-                    );
-                    return Err(element.refuse(reader, "range", message));
+        if kind != JointKind::Free {
+            let range = self.compiler.range(reader, &element, ["range", "limited"], &name)?;
+            match range {
+                None => {}
+                Some([lower, upper]) if one => {
+                    (spec.limits.lower, spec.limits.upper) = (lower * unit, upper * unit);
                 }
-                (spec.limits.lower, spec.limits.upper) = (lower * unit, upper * unit);
-            } else if limited {
-                reader.note(node, "range of a ball joint", "cones are not limits here", &name);
+                Some(_) => {
+                    reader.note(node, "range of a ball joint", "cones are not limits here", &name);
+                }
             }
-        }
-        if let Some([lower, upper]) = element.vector::<2>(reader, "actuatorfrcrange")? {
-            spec.limits.effort = lower.abs().max(upper.abs());
+            let of_force = ["actuatorfrcrange", "actuatorfrclimited"];
+            if let Some([lower, upper]) = self.compiler.range(reader, &element, of_force, &name)? {
+                spec.limits.effort = lower.abs().max(upper.abs());
+            }
         }
         if kind == JointKind::Revolute && spec.limits.lower == f64::NEG_INFINITY {
             spec.kind = JointKind::Continuous;

@@ -36,6 +36,8 @@ pub(super) struct Compiler {
     /// First and last group of the geoms that have mass.
     pub(super) inertia_groups: [f64; 2],
     pub(super) total_mass: Option<f64>,
+    /// True if all bodies get some mass and inertia in MuJoCo.
+    pub(super) bounds_masses: bool,
 }
 
 impl Compiler {
@@ -49,6 +51,7 @@ impl Compiler {
             inertia_from_geoms: FromGeoms::WithoutInertial,
             inertia_groups: [0.0, 5.0],
             total_mass: None,
+            bounds_masses: false,
         };
         let root = files.children(files.main.root_element());
         for node in root.into_iter().filter(|n| n.has_tag_name("compiler")) {
@@ -83,8 +86,14 @@ impl Compiler {
                     }
                 }
             }
-            if let Some(text) = node.attribute("autolimits") {
-                it.autolimits = text.trim() == "true";
+            match node.attribute("autolimits").map(str::trim) {
+                None => {}
+                Some("true") => it.autolimits = true,
+                Some("false") => it.autolimits = false,
+                Some(other) => {
+                    let message = format!("autolimits is '{other}', not true or false");
+                    return Err(reader.refuse(node, "autolimits", message));
+                }
             }
             match node.attribute("inertiafromgeom").map(str::trim) {
                 Some("true") => it.inertia_from_geoms = FromGeoms::Always,
@@ -94,6 +103,10 @@ impl Compiler {
             if let Some(groups) = reader.vector::<2>(node, "inertiagrouprange")? {
                 it.inertia_groups = groups;
             }
+            let is_positive = |attribute: &str| -> Result<bool> {
+                Ok(reader.number(node, attribute)?.is_some_and(|least| least > 0.0))
+            };
+            it.bounds_masses |= is_positive("boundmass")? && is_positive("boundinertia")?;
             it.total_mass = reader.number(node, "settotalmass")?.or(it.total_mass);
             if node.attribute("coordinate").is_some_and(|c| c.trim() == "global") {
                 let message = "coordinate = \"global\" was removed from MJCF";
@@ -170,12 +183,30 @@ impl Compiler {
     }
 }
 
+/// The least distance of the points of `fromto` [m]: MuJoCo refuses 1e-7 and accepts 1e-6.
+const LEAST_LENGTH: f64 = 5e-7;
+
 impl Element<'_> {
     /// The pose between the two points of `fromto`, z from the second to the first, and half their
-    /// distance; `None` without the attribute.
-    pub(super) fn between(&self, reader: &Reader<'_>) -> Result<Option<(Pose, f64)>> {
+    /// distance; `None` without the attribute. It is of a shape of this type.
+    pub(super) fn between(&self, reader: &Reader<'_>, kind: &str) -> Result<Option<(Pose, f64)>> {
         let Some([a, b, c, d, e, f]) = self.vector::<6>(reader, "fromto")? else { return Ok(None) };
         let (from, to) = (Vec3::new(a, b, c), Vec3::new(d, e, f));
+        let refuse = |why: &str| {
+            let tag = self.node.tag_name().name();
+            Err(self.refuse(reader, "fromto", format!("fromto of <{tag}>: {why}")))
+        };
+        if !matches!(kind, "capsule" | "cylinder" | "box" | "ellipsoid") {
+            return refuse(&format!(
+                "it gives capsules, cylinders, boxes and ellipsoids, and the type is {kind}"
+            ));
+        }
+        if self.source_element("mesh").is_some() {
+            return refuse("it does not give the place of a mesh");
+        }
+        if (from - to).norm() < LEAST_LENGTH {
+            return refuse("its two points are one");
+        }
         let rotation = turn_z_to(from - to).unwrap_or_default();
         let pose = Pose { rotation, translation: (from + to) * 0.5 };
         Ok(Some((pose, (from - to).norm() * 0.5)))

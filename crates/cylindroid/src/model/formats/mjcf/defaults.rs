@@ -127,13 +127,20 @@ impl<'d> Element<'d> {
         reader.refuse(self.source_element(attribute).unwrap_or(self.node), attribute, message)
     }
 
+    /// The element that gives the numbers of an attribute: a blank one gives none.
+    fn source_of_numbers(&self, attribute: &str) -> Option<Node<'d, 'd>> {
+        let is_blank =
+            |n: &Node<'_, '_>| n.attribute(attribute).is_none_or(|t| t.trim().is_empty());
+        self.places.iter().find(|n| !is_blank(n)).copied()
+    }
+
     /// Finite numbers, exactly as many as the attribute requires.
     pub(super) fn vector<const N: usize>(
         &self,
         reader: &Reader<'_>,
         attribute: &str,
     ) -> Result<Option<[f64; N]>> {
-        self.source_element(attribute).map_or(Ok(None), |n| reader.vector::<N>(n, attribute))
+        self.source_of_numbers(attribute).map_or(Ok(None), |n| reader.vector::<N>(n, attribute))
     }
 
     /// A finite number.
@@ -141,10 +148,20 @@ impl<'d> Element<'d> {
         Ok(self.vector::<1>(reader, attribute)?.map(|[x]| x))
     }
 
-    /// Finite numbers, any count.
-    pub(super) fn list(&self, reader: &Reader<'_>, attribute: &str) -> Result<Option<Vec<f64>>> {
-        let Some(node) = self.source_element(attribute) else { return Ok(None) };
+    /// Finite numbers, `most` of them at most.
+    pub(super) fn list(
+        &self,
+        reader: &Reader<'_>,
+        attribute: &str,
+        most: usize,
+    ) -> Result<Option<Vec<f64>>> {
+        let Some(node) = self.source_of_numbers(attribute) else { return Ok(None) };
         let list = reader.list(node, attribute)?;
+        if let Some(count) = list.as_ref().map(Vec::len).filter(|count| *count > most) {
+            let tag = node.tag_name().name();
+            let message = format!("{attribute} of <{tag}> has {count} numbers, at most {most}");
+            return Err(reader.refuse(node, attribute, message));
+        }
         if let Some(fault) = list.as_ref().and_then(|list| magnitude::fault(list)) {
             let message = format!("{attribute} of <{}> {fault}", node.tag_name().name());
             return Err(reader.refuse(node, attribute, message));

@@ -19,6 +19,9 @@ use crate::error::{Error, Result};
 use crate::model::{JointKind, LoopJointSpec, Mimic};
 use crate::spatial::{Pose, Quaternion, Vec3};
 
+/// Coefficients of a polynomial at most.
+pub(super) const POLYNOMIAL: usize = 5;
+
 impl<'d> Mjcf<'d> {
     pub(super) fn equalities(&mut self) -> Result<()> {
         for node in self.files.section("equality") {
@@ -140,7 +143,7 @@ impl<'d> Mjcf<'d> {
             return Ok(());
         }
         let leader = self.joint_named(node, "joint2")?;
-        let polynomial = Element::bare(node).list(&self.reader, "polycoef")?;
+        let polynomial = Element::bare(node).list(&self.reader, "polycoef", POLYNOMIAL)?;
         let mut c = [0.0, 1.0, 0.0, 0.0, 0.0];
         for (slot, value) in c.iter_mut().zip(polynomial.unwrap_or_default()) {
             *slot = value;

@@ -103,11 +103,12 @@ impl<'d> Mjcf<'d> {
     /// The pose of a geom on its frame, and its sizes.
     pub(super) fn place_and_size(&self, element: &Element<'d>) -> Result<(Pose, Vec<f64>)> {
         let pose = self.compiler.pose(&self.reader, element)?;
-        let mut size = element.list(&self.reader, "size")?.unwrap_or_default();
-        let Some((between, half_length)) = element.between(&self.reader)? else {
+        let mut size = element.list(&self.reader, "size", 3)?.unwrap_or_default();
+        let kind = self.kind_of(element);
+        let Some((between, half_length)) = element.between(&self.reader, kind)? else {
             return Ok((pose, size));
         };
-        let is_box = matches!(self.kind_of(element), "box" | "ellipsoid");
+        let is_box = matches!(kind, "box" | "ellipsoid");
         // The first size is across; the length comes from the two points.
         size.truncate(1);
         if is_box {

@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 use roxmltree::Node;
 
 use super::Mjcf;
-use super::attributes::used;
+use super::attributes::{ORIENTATIONS, used};
 use super::compiler::FromGeoms;
 use super::copies::Placed;
 use super::defaults::Element;
@@ -66,9 +66,18 @@ impl<'d> Mjcf<'d> {
         self.reader.unread_attributes(node, &used("inertial"));
         let element = Element::bare(node);
         let mut link_from_inertia = link_from_frame * self.compiler.pose(&self.reader, &element)?;
-        let Some(mass) = element.number(&self.reader, "mass")? else { return Ok(None) };
+        for attribute in ["pos", "mass"] {
+            self.reader.required(node, attribute)?;
+        }
+        let mass = element.number(&self.reader, "mass")?.unwrap_or_default();
         let diagonal = element.vector::<3>(&self.reader, "diaginertia")?;
         let full = element.vector::<6>(&self.reader, "fullinertia")?;
+        let others = ["diaginertia"].into_iter().chain(ORIENTATIONS);
+        if let (Some(_), Some(other)) = (full, others.into_iter().find(|a| node.has_attribute(*a)))
+        {
+            let message = format!("<inertial> has both fullinertia and {other}");
+            return Err(self.reader.refuse(node, other, message));
+        }
         let [xx, yy, zz, xy, xz, yz] = match (full, diagonal) {
             (Some(full), _) => {
                 // Its axes are those of the frame.
@@ -93,6 +102,13 @@ impl<'d> Mjcf<'d> {
             if group < first || group > last || mass.map_or(density, |m| m) == 0.0 {
                 continue;
             }
+            if let Some(attribute) = [("mass", mass), ("density", Some(density))]
+                .into_iter()
+                .find_map(|(name, value)| value.filter(|x| *x < 0.0).map(|_| name))
+            {
+                let message = format!("{attribute} of <geom> is negative");
+                return Err(element.refuse(&self.reader, attribute, message));
+            }
             let (pose, size) = self.place_and_size(&element)?;
             let kind = self.kind_of(&element);
             let found = match kind {
@@ -103,6 +119,7 @@ impl<'d> Mjcf<'d> {
                 if !matches!(kind, "plane" | "hfield") {
                     let why = "its mesh has no volume, or was not read: its body has no mass here";
                     self.reader.note(*node, "mass of a geom", why, body);
+                    self.of_unread_mass.insert(body.to_owned());
                     return Ok(None);
                 }
                 continue;

@@ -24,6 +24,8 @@ mod equality;
 mod files;
 mod geom;
 mod inertia;
+mod limited;
+mod massless;
 mod mesh_inertia;
 mod part;
 mod replicate;
@@ -89,8 +91,14 @@ struct Mjcf<'d> {
     /// The models that this one may attach.
     attachable: BTreeMap<String, Rc<Part>>,
     has_attached_actuators: bool,
+    attached_shapes: usize,
+    /// The index of the link of a body of the file.
+    link_index: BTreeMap<String, usize>,
     /// The index of the first joint between a body and its parent.
     first_joint: BTreeMap<String, usize>,
+    /// The bodies that joints move, and those whose mass is that of meshes that were not read.
+    moving: Vec<(Node<'d, 'd>, String)>,
+    of_unread_mass: BTreeSet<String>,
 }
 
 /// Reads the text of an MJCF model. The path is used in errors, to find meshes, and to read the
@@ -195,11 +203,16 @@ fn read<'d>(
         copies: Copies::default(),
         attachable: BTreeMap::new(),
         has_attached_actuators: false,
+        attached_shapes: 0,
+        link_index: BTreeMap::new(),
         first_joint: BTreeMap::new(),
+        moving: Vec::new(),
+        of_unread_mass: BTreeSet::new(),
     };
     it.assets()?;
     it.parts(nesting)?;
     it.bodies()?;
+    it.note_massless();
     let sections = ["tendon", "actuator"].map(|name| it.files.section(name));
     it.couplings = Couplings::of(&it.joints, &it.starts, &it.sums, sections);
     it.excluded_contacts()?;

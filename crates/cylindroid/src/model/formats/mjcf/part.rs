@@ -36,6 +36,60 @@ pub(super) struct Part {
     pub(super) first_joint: BTreeMap<String, usize>,
     pub(super) path: PathBuf,
     pub(super) report: LoadReport,
+    pub(super) by_link: ByLink,
+}
+
+/// Indices of what a part has at each of its links: an `<attach>` costs as much as what it brings.
+#[derive(Default)]
+pub(super) struct ByLink {
+    pub(super) links: Indices,
+    pub(super) sites: Indices,
+    /// Pairs that do not collide, at the first of both.
+    pub(super) pairs: Indices,
+    /// At both links.
+    pub(super) loops: Indices,
+    /// Bodies at their first joints.
+    pub(super) bodies: BTreeMap<usize, String>,
+}
+
+#[derive(Default)]
+pub(super) struct Indices(BTreeMap<String, Vec<usize>>);
+
+impl Indices {
+    fn add(&mut self, link: &str, index: usize) {
+        match self.0.get_mut(link) {
+            Some(all) => all.push(index),
+            None => _ = self.0.insert(link.to_owned(), vec![index]),
+        }
+    }
+
+    /// Those at any of these links, in their order.
+    pub(super) fn at(&self, links: &BTreeSet<String>) -> Vec<usize> {
+        let all: BTreeSet<usize> =
+            links.iter().filter_map(|link| self.0.get(link)).flatten().copied().collect();
+        all.into_iter().collect()
+    }
+}
+
+impl ByLink {
+    pub(super) fn of(
+        links: &[Link],
+        sites: &[(String, String, Pose)],
+        pairs: &[[String; 2]],
+        loops: &[LoopJointSpec],
+        first_joint: &BTreeMap<String, usize>,
+    ) -> Self {
+        let mut it = Self::default();
+        links.iter().enumerate().for_each(|(i, link)| it.links.add(&link.name, i));
+        sites.iter().enumerate().for_each(|(i, site)| it.sites.add(&site.1, i));
+        pairs.iter().enumerate().for_each(|(i, pair)| it.pairs.add(&pair[0], i));
+        for (i, joint) in loops.iter().enumerate() {
+            it.loops.add(&joint.a, i);
+            it.loops.add(&joint.b, i);
+        }
+        it.bodies = first_joint.iter().map(|(body, i)| (*i, body.clone())).collect();
+        it
+    }
 }
 
 /// A body of a part with all that it carries; or the world, with the whole part.
@@ -71,6 +125,22 @@ impl Part {
 }
 
 impl Subtree {
+    /// The indices of the sites of a part that it has.
+    pub(super) fn sites(&self, part: &Part) -> Vec<usize> {
+        match self.is_whole {
+            true => (0..part.sites.len()).collect(),
+            false => part.by_link.sites.at(&self.links),
+        }
+    }
+
+    /// The number of shapes of a part that it has.
+    pub(super) fn shapes(&self, part: &Part) -> usize {
+        let own = part.by_link.links.at(&self.links);
+        let world = self.is_whole.then_some(0);
+        let links = own.into_iter().chain(world).map(|i| &part.links[i]);
+        links.map(|l| l.visuals.len() + l.collisions.len()).sum()
+    }
+
     /// True for a joint at its base.
     pub(super) fn is_first(&self, index: usize, joint: &JointSpec) -> bool {
         joint.parent == self.base && (self.is_whole || index == self.joints.start)

@@ -16,6 +16,7 @@ use roxmltree::Node;
 
 use super::Mjcf;
 use super::defaults::Element;
+use super::equality::POLYNOMIAL;
 use crate::error::{Error, Result};
 use crate::model::{JointKind, JointSpec, Mimic};
 use crate::spatial::Pose;
@@ -26,7 +27,7 @@ type Terms = Vec<(usize, f64)>;
 impl<'d> Mjcf<'d> {
     /// A tendon of constant length couples its joints, two tendons those of both.
     pub(super) fn couple_by_tendon(&mut self, node: Node<'d, 'd>, name: &str) -> Result<()> {
-        let polynomial = Element::bare(node).list(&self.reader, "polycoef")?;
+        let polynomial = Element::bare(node).list(&self.reader, "polycoef", POLYNOMIAL)?;
         let mut c = [0.0, 1.0, 0.0, 0.0, 0.0];
         for (slot, value) in c.iter_mut().zip(polynomial.unwrap_or_default()) {
             *slot = value;

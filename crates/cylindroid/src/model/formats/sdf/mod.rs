@@ -3,8 +3,8 @@
 //! Formula  parent_from_joint = model_from_parent^-1 model_from_joint, likewise for the child:
 //!          every link keeps the frame of the file
 //! Units    m, rad (degrees for a pose with `degrees="true"`), kg, N, N m
-//! Valid    one model of a file, the first with a joint, with nested and included models
-//!          (`model::link`). Joints form a graph:
+//! Valid    one model of a file, the one that is named or the first with a joint, with nested and
+//!          included models (`model::link`). Joints form a graph:
 //!          a spanning tree provides the coordinates, and the remaining joints become loop joints.
 //!          The root is `world` if a joint refers to it or the model is static, otherwise the
 //!          canonical link
@@ -73,6 +73,11 @@ struct Sdf<'d> {
 /// model, an invalid number, a name that is missing or unknown, a cycle of frames, and everything
 /// that the builder rejects.
 pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
+    parse_model(text, path, None)
+}
+
+/// [`parse`], of several models that of this name.
+pub(super) fn parse_model(text: &str, path: &Path, model: Option<&str>) -> Result<Mechanism> {
     let text = &*xml_limits::without_undeclared(text);
     let source = Source { format: FORMAT, path, text };
     let document = xml::document(&source)?;
@@ -88,7 +93,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Mechanism> {
         inclusion::gather(&source, &together, |source, node, _| Ok(includes::find(source, node)))?;
     let sources: Vec<Source<'_>> = included.iter().map(|f| f.source(FORMAT)).collect();
     let documents: Vec<Document<'_>> = sources.iter().map(xml::document).collect::<Result<_>>()?;
-    read(source, sources.clone(), root, ByInclude::new(&document, &included, &documents))
+    let includes = ByInclude::new(&document, &included, &documents);
+    read(source, sources.clone(), root, includes, model)
 }
 
 fn read<'d>(
@@ -96,6 +102,7 @@ fn read<'d>(
     included: Vec<Source<'d>>,
     root: Node<'d, 'd>,
     includes: ByInclude<'d>,
+    wanted: Option<&str>,
 ) -> Result<Mechanism> {
     let mut reader = Reader::new(source, None);
     reader.included = included;
@@ -114,15 +121,33 @@ fn read<'d>(
             _ => None,
         })
         .collect();
-    // A world is a ground and objects around a robot.
-    let robot = models.iter().position(|m| m.model.descendants().any(|n| n.has_tag_name("joint")));
-    let Some(&chosen) = models.get(robot.unwrap_or(0)) else {
+    if models.is_empty() {
         let tag = Reader::tag(root);
         return Err(source.error(tag, "this SDF has no <model>", "give a file with one"));
+    }
+    // A world is a ground and objects around a robot.
+    let is_robot = |m: &Placed<'_>| m.model.descendants().any(|n| n.has_tag_name("joint"));
+    let chosen = match wanted {
+        None => models[models.iter().position(is_robot).unwrap_or(0)],
+        Some(wanted) => {
+            let names: Vec<&str> = models.iter().filter_map(|m| m.name(&reader)).collect();
+            let found = models.iter().find(|m| m.name(&reader) == Some(wanted));
+            found.copied().ok_or_else(|| {
+                let names = names.join(", ");
+                let message = format!("this SDF has no model '{wanted}'; it has {names}");
+                source.error(Reader::tag(root), message, "")
+            })?
+        }
     };
     for other in models.iter().filter(|m| m.by != chosen.by) {
         let name = other.name(&reader).unwrap_or("").to_owned();
-        let why = "one model of a file is read: the first with a joint, otherwise the first";
+        let why = match wanted {
+            None => {
+                "one model of a file is read, the first with a joint or else the first; \
+                 FILE.sdf#NAME reads the one of this name"
+            }
+            Some(_) => "FILE.sdf#NAME reads the model of this name alone",
+        };
         reader.note(other.by, "further <model>", why, &name);
         pass_over(&mut reader, &includes, *other);
     }

@@ -6,9 +6,9 @@ mod published;
 
 use cylindroid::Error;
 use cylindroid::closure::{
-    FingerContact, GraspMobility, Immobilisation, WrenchSpace, grasp_mobility,
+    FingerContact, Friction, GraspMobility, Immobilisation, WrenchSpace, grasp_mobility,
 };
-use cylindroid::model::SurfaceCurvature;
+use cylindroid::model::{ContactCurvature, SurfaceCurvature};
 use cylindroid::spatial::{Pose, Vec3};
 
 use self::bodies::{Surface, Touch, displacement};
@@ -375,4 +375,46 @@ fn curvatures_that_are_refused() {
     }
     let many = vec![good; 65];
     assert!(grasp_mobility(&many, SPACE).unwrap_err().to_string().contains("at most 64"));
+}
+
+/// The rank of the contact normals is a matter of a few billionths of the size of the object: among
+/// those that press, or among all of them, or not at all.
+#[test]
+fn ranks_that_rounding_decides_are_ambiguous() {
+    let finger = |x: f64, y: f64, normal: Vec3| FingerContact {
+        point: Vec3::new(x, y, 0.0),
+        normal,
+        friction: Friction::None,
+        strength: 1.0,
+        curvature: ContactCurvature::default(),
+    };
+    let is_ambiguous = |fingers: &[FingerContact]| {
+        let found = grasp_mobility(fingers, PLANE).unwrap();
+        assert_eq!(found.equilibria.rows(), fingers.len());
+        (found.ambiguous, found)
+    };
+    let pair = |y: f64| [finger(-1.0, y, Vec3::X), finger(1.0, y, -Vec3::X)];
+    let pushers = [finger(0.3, -1.0, Vec3::Y), finger(-0.4, -1.0, Vec3::Y)];
+    // Two pairs on lines a few billionths apart; the pushers, which nothing opposes, see to it that
+    // all normals together have a clear rank.
+    for (apart, expected) in [(3e-8, true), (0.1, false), (0.0, false)] {
+        let fingers = [&pair(0.0)[..], &pair(apart), &pushers].concat();
+        let (found, report) = is_ambiguous(&fingers);
+        assert_eq!(found, expected, "{apart}: {report:?}");
+        let presses =
+            |i: usize| (0..report.equilibria.cols()).any(|j| report.equilibria[(i, j)] > 0.0);
+        assert_eq!([0, 1, 2, 3, 4, 5].map(presses), [true, true, true, true, false, false]);
+    }
+    // A pair, and a finger nearly on its line that does not press.
+    for (height, expected) in [(3e-8, true), (0.1, false)] {
+        let fingers = [&pair(0.0)[..], &[finger(-1.0, height, Vec3::X)]].concat();
+        let (found, report) = is_ambiguous(&fingers);
+        assert_eq!(found, expected, "{height}: {report:?}");
+        let presses =
+            |i: usize| (0..report.equilibria.cols()).any(|j| report.equilibria[(i, j)] > 0.0);
+        assert_eq!([0, 1, 2].map(presses), [true, true, false]);
+    }
+    // Nothing presses.
+    assert!(!is_ambiguous(&pushers).0);
+    assert!(!is_ambiguous(&[]).0);
 }
