@@ -132,8 +132,8 @@ typedef struct cyl_servo_options {
   double speed_linear;
   // Largest angular speed [rad/s]; infinite for none.
   double speed_angular;
-  // Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; infinite for
-  // none.
+  // Acceleration limit of coordinates without one in the model [rad/s^2 or m/s^2]; 0 for the default
+  // ramp (20 rad/s^2, or lengths of the mechanism/s^2), infinite for none.
   double acceleration;
   // Jerk limit of coordinates without one in the model [rad/s^3 or m/s^3]; infinite for none.
   double jerk;

@@ -260,7 +260,8 @@ impl CollisionModel {
     /// rate of the distance is its product with the joint velocities. Without allocation.
     ///
     /// # Panics
-    /// If `row` has other than n entries, or the state is of another mechanism.
+    /// If `row` has other than n entries, or the state is of another mechanism or the pair of another
+    /// model.
     pub fn gradient_into(&self, state: &State, near: &NearPair, row: &mut [f64]) {
         assert_eq!(row.len(), self.mechanism.n(), "entries of the gradient");
         gradient_into(state, near, row);
@@ -363,7 +364,7 @@ impl CollisionModel {
     /// ```
     ///
     /// # Panics
-    /// If the state is of another mechanism.
+    /// If the state is of another mechanism, or the pair of another model.
     #[must_use]
     pub fn gradient(&self, state: &State, near: &NearPair) -> Vec<f64> {
         let mut row = vec![0.0; self.mechanism.n()];

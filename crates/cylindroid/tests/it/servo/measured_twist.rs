@@ -24,7 +24,7 @@ fn prepared(name: &str, task: Task) -> (Mechanism, Servo, Vec<f64>) {
     let mechanism = catalogue::load(name).unwrap();
     let q = assemble(&mechanism, mechanism.home(), &[]).unwrap().q;
     let mut servo = servo(&mechanism, |o| {
-        (o.dt, o.command_timeout, o.acceleration) = (DT, 0.05, 5.0);
+        (o.dt, o.command_timeout, o.acceleration) = (DT, 0.05, Some(5.0));
         o.task = task;
     });
     servo.start_from(&q).unwrap();

@@ -384,7 +384,7 @@ fn tasks_keep_limits_too() {
     for plant in PLANTS {
         for known in [plant, Plant::IDEAL] {
             let mut options = TaskServoOptions::new(&mechanism);
-            (options.dt, options.acceleration, options.plant) = (0.01, Some(10.0), known);
+            (options.dt, options.acceleration, options.plant) = (0.01, 10.0, known);
             let mut beyond = 0.0_f64;
             for _ in 0..3 {
                 let of = |frame: EndEffector, way: Vec3| {

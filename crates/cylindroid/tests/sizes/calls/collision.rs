@@ -5,8 +5,8 @@ use super::prelude::*;
 calls! {
     collision::CollisionModel::add_obstacle;
     collision::CollisionModel::bodies;
-    collision::CollisionModel::gradient = |c: &'static CollisionModel, s: &'static State, near: &'static NearPair| { same(c, s).then(|| c.gradient(s, near)) };
-    collision::CollisionModel::gradient_into = |c: &'static CollisionModel, s: &'static State, near: &'static NearPair| { let mut row = vec![0.0; s.mechanism().n()]; same(c, s).then(|| c.gradient_into(s, near, &mut row)); row };
+    collision::CollisionModel::gradient = |c: &'static CollisionModel, s: &'static State, near: &'static NearPair| { same(c, s, near).then(|| c.gradient(s, near)) };
+    collision::CollisionModel::gradient_into = |c: &'static CollisionModel, s: &'static State, near: &'static NearPair| { let mut row = vec![0.0; s.mechanism().n()]; same(c, s, near).then(|| c.gradient_into(s, near, &mut row)); row };
     collision::CollisionModel::ignored;
     collision::CollisionModel::mechanism;
     collision::CollisionModel::move_obstacle;

@@ -53,10 +53,12 @@ mod prelude {
 
     pub(super) use super::calls;
 
-    /// True if the state is one of the mechanism of the shapes: gradients have no errors.
-    pub(super) fn same(c: &CollisionModel, s: &State) -> bool {
+    /// True if the state is one of the mechanism of the shapes, and the pair may be: gradients have no
+    /// errors.
+    pub(super) fn same(c: &CollisionModel, s: &State, near: &NearPair) -> bool {
         let links = |m: &Mechanism| (m.name().to_owned(), m.joints().to_vec());
-        links(c.mechanism()) == links(s.mechanism())
+        let is_link = |l: Option<usize>| l.is_none_or(|l| l < s.mechanism().links().len());
+        links(c.mechanism()) == links(s.mechanism()) && is_link(near.link_a) && is_link(near.link_b)
     }
 }
 

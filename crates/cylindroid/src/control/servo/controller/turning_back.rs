@@ -82,11 +82,11 @@ impl Servo {
             most.max(stopping_time((rate * column).abs(), limits))
         });
         let way = 0.5 * time + self.options.dt;
-        self.predicted.copy_from_slice(q);
+        self.rest_q.copy_from_slice(q);
         for ((rate, column), &c) in joints.zip(self.chain.coordinates()) {
-            self.predicted[c] += rate * column * way;
+            self.rest_q[c] += rate * column * way;
         }
-        let pose = self.chain.set(&self.predicted);
+        let pose = self.chain.set(&self.rest_q);
         self.space.load(&self.chain, &mut self.rest_task);
         self.chain.set(q);
         self.load_asked(aim, pose);
