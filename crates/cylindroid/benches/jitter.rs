@@ -65,8 +65,8 @@ fn main() {
             "--deadlines" => {
                 seconds = arguments.next().and_then(|n| n.parse::<u32>().ok());
                 if seconds.is_none() {
-                    println!("--deadlines needs a number of seconds");
-                    return;
+                    eprintln!("error: --deadlines needs a number of seconds");
+                    std::process::exit(2);
                 }
             }
             name => names.push(name.to_owned()),

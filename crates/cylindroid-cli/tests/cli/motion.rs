@@ -23,6 +23,7 @@ fn the_command_of_the_readme_reaches() {
 #[test]
 fn the_default_ramp_is_named_and_can_be_switched_off() {
     assert!(text(&["info", "ur5e"]).contains("default ramp of 20"));
+    assert!(text(&["info", "stewart"]).contains("45.4302 m/s^2 of slides"));
     assert!(!text(&["info", "panda"]).contains("default ramp"));
     let time = |more: &[&str]| {
         let report = json(&[&["move", "ur5e", "--to", "0.4,0.2,0.5"], more].concat(), 0);

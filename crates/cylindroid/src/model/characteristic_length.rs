@@ -68,13 +68,18 @@ impl Mechanism {
         self.data.reach
     }
 
-    /// Unit of the change of a coordinate: [`Mechanism::reach`] for lengths, otherwise 1, also for loop
-    /// joints, whose places follow those of the coordinates.
+    /// Unit of the change of a coordinate: [`Mechanism::reach`] for lengths, otherwise 1. The places of
+    /// actuated loop joints follow those of the coordinates.
     pub(crate) fn unit_of(&self, place: usize) -> f64 {
-        match self.coordinates().get(place) {
-            Some(c) if c.kind.is_length() => self.reach(),
-            _ => 1.0,
-        }
+        let is_length = match self.coordinates().get(place) {
+            Some(c) => c.kind.is_length(),
+            None => {
+                let mut joints = self.loops().iter().filter(|l| l.actuated);
+                let joint = joints.nth(place - self.n());
+                joint.is_some_and(|l| l.kind == JointKind::Prismatic)
+            }
+        };
+        if is_length { self.reach() } else { 1.0 }
     }
 
     /// Largest distance of a joint from the origin of the world, at home (m).

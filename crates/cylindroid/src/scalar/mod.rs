@@ -43,6 +43,25 @@ pub(crate) fn arithmetic() -> &'static str {
     std::env::consts::ARCH
 }
 
+/// The largest number between one that fits and one that does not, after so many halvings.
+pub(crate) fn largest(
+    fitting: f64,
+    other: f64,
+    halvings: usize,
+    mut fits: impl FnMut(f64) -> bool,
+) -> f64 {
+    let (mut inside, mut outside) = (fitting, other);
+    for _ in 0..halvings {
+        let middle = 0.5 * (inside + outside);
+        if fits(middle) {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    inside
+}
+
 /// The nearest number to `x` in [lower, upper]. NaN stays NaN; a NaN bound does not bound, where
 /// `f64::clamp` panics.
 #[inline]

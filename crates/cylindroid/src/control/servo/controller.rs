@@ -102,10 +102,11 @@ pub struct Servo {
     /// The pose towards which the motion of this step ends, and its error.
     edge_aim: Option<EdgeAim>,
     edge_error: Vec<f64>,
-    /// A target or twist at whose end the joints must rest, where they do, the Jacobian there, and a
+    /// A target or twist at whose end the joints must rest, where they do, with the Jacobian, and a
     /// workspace.
     ending: Option<Aim>,
     rest_q: Vec<f64>,
+    rest: Chain,
     rest_task: Matrix,
     trial: Vec<f64>,
     /// Closed chains only.
@@ -223,6 +224,7 @@ impl Servo {
             edge_error: vec![0.0; m],
             ending: None,
             rest_q: mechanism.home().to_vec(),
+            rest: chain.clone(),
             rest_task: Matrix::zeros(m, n),
             trial: vec![0.0; rates],
             rates: vec![0.0; mechanism.n().max(rates)],

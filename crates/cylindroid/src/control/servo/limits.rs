@@ -23,7 +23,8 @@ use super::jerk_limited_stop::JerkLimitedStop;
 use super::plant::Plant;
 use super::stopping::stopping_velocity;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
-use crate::model::{JointKind, Limits, Mechanism};
+use crate::model::{Limits, Mechanism};
+use crate::scalar::largest;
 use crate::tolerance::{DEFAULT_RAMP, LIMIT_MET, LIMIT_ROUNDING};
 
 /// State of a joint: the position of a coordinate and its last commanded velocity.
@@ -118,12 +119,12 @@ impl VelocityBounds {
                 return (most.max(brake), cause);
             }
             let end = if fits(brake) {
-                largest(brake, most, fits)
+                largest(brake, most, BISECTIONS, fits)
             } else if brake_fits(brake) {
                 brake
             } else {
                 // Positions take precedence if a measured state contradicts the others.
-                brake.min(largest(0.0, brake.max(0.0), |new| highest(new, 0.0) <= room))
+                brake.min(largest(0.0, brake.max(0.0), BISECTIONS, |new| highest(new, 0.0) <= room))
             };
             (end, LimitKind::Position)
         };
@@ -235,16 +236,23 @@ pub(in crate::control) fn limits_of_servo(
     default: DefaultLimits,
     gain: f64,
 ) -> Vec<Limits> {
-    let own = coordinates.map(|c| (mechanism.coordinates()[c].limits, mechanism.unit_of(c)));
+    let (all, n) = (mechanism.coordinates(), mechanism.n());
+    // Positions of loop joints are no coordinates.
+    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
+    let actuated = mechanism.loops().iter().filter(|l| l.actuated);
+    let loops = actuated.map(|l| Limits { lower, upper, ..l.limits });
     let or = |own: &mut f64, other: f64| {
         if *own == f64::INFINITY {
             *own = other;
         }
     };
-    own.chain(limits_of_loop_joints(mechanism))
-        .map(|(mut own, unit)| {
+    coordinates
+        .map(|c| (c, all[c].limits))
+        .chain((n..).zip(loops))
+        .map(|(place, mut own)| {
             plant.keep_off(&mut own);
-            or(&mut own.acceleration, default.acceleration.unwrap_or(DEFAULT_RAMP * unit));
+            let ramp = DEFAULT_RAMP * mechanism.unit_of(place);
+            or(&mut own.acceleration, default.acceleration.unwrap_or(ramp));
             or(&mut own.jerk, default.jerk);
             if own.jerk < f64::INFINITY && gain > 0.0 {
                 own.acceleration = own.acceleration.min(0.5 * own.jerk / gain);
@@ -252,31 +260,6 @@ pub(in crate::control) fn limits_of_servo(
             own
         })
         .collect()
-}
-
-/// The limits of loop joints that are actuated, without positions, which are no coordinates, and the
-/// units of their motions [1 or m].
-fn limits_of_loop_joints(mechanism: &Mechanism) -> impl Iterator<Item = (Limits, f64)> + '_ {
-    let actuated = mechanism.loops().iter().filter(|l| l.actuated);
-    let (lower, upper) = (f64::NEG_INFINITY, f64::INFINITY);
-    actuated.map(move |l| {
-        let unit = if l.kind == JointKind::Prismatic { mechanism.reach() } else { 1.0 };
-        (Limits { lower, upper, ..l.limits }, unit)
-    })
-}
-
-/// The largest number between one that fits and one that does not.
-fn largest(fitting: f64, other: f64, fits: impl Fn(f64) -> bool) -> f64 {
-    let (mut inside, mut outside) = (fitting, other);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (inside + outside);
-        if fits(middle) {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
-    }
-    inside
 }
 
 /// The acceleration of a joint after a step in which its velocity changed, for [`JointState`]: zero

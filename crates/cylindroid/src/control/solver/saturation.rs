@@ -184,7 +184,7 @@ impl Saturator {
             self.set.inequalities.upper[i] = bound.upper;
         }
         let Some(saturation) = self.solve(&p, p.last, rates, curvature) else {
-            brake(&p, rates);
+            brake(p.last, p.bounds, rates);
             return Saturation { scale: 0.0, direction_lost: true };
         };
         // Rounding at the critical joint.
@@ -223,7 +223,7 @@ impl Saturator {
         }
         let found = self.solve(&p, &coupling.last, &coupling.primary, curvature);
         let Some(saturation) = found else {
-            brake(&p, rates);
+            brake(p.last, p.bounds, rates);
             coupling.actuation.fill(0.0);
             return Saturation { scale: 0.0, direction_lost: true };
         };
@@ -241,7 +241,7 @@ impl Saturator {
         rates: &mut [f64],
     ) -> Saturation {
         match coupling {
-            None => brake(p, rates),
+            None => brake(p.last, p.bounds, rates),
             Some(coupling) => {
                 coupling.expand(&coupling.last, rates);
                 self.more.iter_mut().zip(&*rates).for_each(|(more, rate)| *more = -rate);
@@ -349,11 +349,11 @@ impl Saturator {
 }
 
 /// The last velocities, slowed together as far as the bounds permit.
-pub(in crate::control) fn brake(p: &Problem<'_>, out: &mut [f64]) {
+pub(in crate::control) fn brake(last: &[f64], bounds: &[VelocityBounds], out: &mut [f64]) {
     // rates (1 - s): from the last ones to rest.
-    out.iter_mut().zip(p.last).for_each(|(o, r)| *o = -r);
-    let share = interval(p.last, out, p.bounds).map_or(1.0, |span| span.most);
-    for ((o, r), bound) in out.iter_mut().zip(p.last).zip(p.bounds) {
+    out.iter_mut().zip(last).for_each(|(o, r)| *o = -r);
+    let share = interval(last, out, bounds).map_or(1.0, |span| span.most);
+    for ((o, r), bound) in out.iter_mut().zip(last).zip(bounds) {
         *o = bound.clamp(r * (1.0 - share));
     }
 }

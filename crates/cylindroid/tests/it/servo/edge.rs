@@ -3,7 +3,7 @@
 use cylindroid::control::{Stall, Status, Task};
 use cylindroid::inverse::Method;
 use cylindroid::model::{JointKind, JointSpec, Limits};
-use cylindroid::{Mechanism, Pose, Rotation, Servo, ServoOptions, Vec3, catalogue};
+use cylindroid::{Mechanism, Pose, Rotation, Servo, ServoOptions, Twist, Vec3, catalogue};
 
 /// A motion to the edge of reach.
 #[derive(Debug)]
@@ -128,8 +128,14 @@ fn arm_on_a_slide(world: Pose, size: f64) -> Mechanism {
     builder.build().unwrap()
 }
 
-/// The way to the edge before a target, step by step, in angles and old units of length.
-fn way_to_the_edge(task: Task, target: Vec3, world: Pose, size: f64) -> Vec<Vec<f64>> {
+/// The way to the edge before a target, or along a twist in its direction, step by step, in angles and
+/// old units of length.
+fn way_to_the_edge(
+    (task, is_twist): (Task, bool),
+    target: Vec3,
+    world: Pose,
+    size: f64,
+) -> Vec<Vec<f64>> {
     let robot = arm_on_a_slide(world, size);
     let mut options = ServoOptions { dt: 1e-2, task, ..ServoOptions::new(&robot) };
     options.tolerance.position *= size;
@@ -137,14 +143,21 @@ fn way_to_the_edge(task: Task, target: Vec3, world: Pose, size: f64) -> Vec<Vec<
     options.joint_weights = vec![1.0 / (size * size), 1.0, 1.0, 1.0, 1.0];
     let mut servo = Servo::new(&robot, options).unwrap();
     let mut q = vec![0.1 * size, 0.3, -0.4, 0.2, 0.1];
+    let direction = target.unit(1e-9).unwrap();
     let target = Pose {
         rotation: world.rotation * Rotation::exp(Vec3::new(0.3, 0.1, 0.4)),
         translation: world * (target * size),
     };
+    let outwards = world.rotation * (direction * (0.3 * size));
+    let twist = Twist { linear: outwards, angular: Vec3::ZERO };
     let mut way = Vec::new();
     let mut status = Status::Moving;
     for _ in 0..600 {
-        status = servo.step(&q, target).unwrap().status;
+        if is_twist {
+            servo.step_twist(&q, Some(twist)).unwrap();
+        } else {
+            status = servo.step(&q, target).unwrap().status;
+        }
         servo.advance(&mut q);
         way.push(std::iter::once(q[0] / size).chain(q[1..].iter().copied()).collect());
     }
@@ -161,9 +174,9 @@ fn the_way_to_the_edge_depends_on_no_frame_and_no_unit() {
     // Farther than the arm is long, and nearer. Towards a position the arm has self-motions, and takes its
     // way straight.
     let targets = [Vec3::new(2.5, 1.0, 1.2), Vec3::new(1.35, 0.5, 0.35)];
-    for (task, target) in
-        [Task::POSE, Task::POSITION].into_iter().flat_map(|k| targets.map(|t| (k, t)))
-    {
+    let tasks =
+        [(Task::POSE, false), (Task::POSITION, false), (Task::POSE, true), (Task::POSITION, true)];
+    for (task, target) in tasks.into_iter().flat_map(|k| targets.map(|t| (k, t))) {
         let own = way_to_the_edge(task, target, Pose::IDENTITY, 1.0);
         let moves = own[0].iter().zip(own.last().unwrap()).map(|(a, b)| (a - b).abs());
         assert!(moves.fold(0.0, f64::max) > 0.2, "it hardly moves");

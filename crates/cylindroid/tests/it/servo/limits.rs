@@ -265,6 +265,35 @@ fn the_first_step_is_a_ramp() {
     assert!(fastest(Some(f64::INFINITY)) > 10.0 * ramp);
 }
 
+/// So do the drives of closed chains, slides in lengths of the mechanism.
+#[test]
+fn the_first_step_of_drives_is_a_ramp() {
+    for name in ["five-bar", "3rrr", "stewart", "delta", "3rps"] {
+        let robot = catalogue::load(name).unwrap();
+        let q = cylindroid::closure::assemble(&robot, robot.home(), &[]).unwrap().q;
+        let mut target = robot.state(&q).unwrap().pose(robot.reference()).unwrap();
+        let is_planar = robot.dimension() == cylindroid::model::Dimension::Planar;
+        let up = if is_planar { 0.0 } else { 0.1 };
+        target.translation += Vec3::new(0.2, 0.1, up) * robot.reach();
+        let fastest = |acceleration: Option<f64>| {
+            let mut servo = servo(&robot, |o| o.acceleration = acceleration);
+            servo.step(&q, target).unwrap();
+            let step = servo.options().dt;
+            let drives = robot.coordinates().iter().zip(servo.joint_velocities());
+            drives.filter(|(c, _)| c.actuated).fold(0.0, |most: f64, (c, v)| {
+                let unit = if c.kind.is_length() { robot.reach() } else { 1.0 };
+                let published = c.limits.acceleration.is_finite();
+                most.max(if published { 0.0 } else { v.abs() / (step * unit) })
+            })
+        };
+        let ramp = cylindroid::tolerance::DEFAULT_RAMP;
+        let (with, without) = (fastest(None), fastest(Some(f64::INFINITY)));
+        println!("{name}: {with} with the ramp, {without} without");
+        assert!(with > 0.5 * ramp && with < ramp * (1.0 + 1e-9), "{name}: {with}");
+        assert!(without > 2.0 * ramp, "{name}: {without}");
+    }
+}
+
 /// The default ramp costs no targets: random motions with it and without.
 #[test]
 fn the_default_ramp_costs_no_targets() {

@@ -21,6 +21,7 @@
 //! Checked  tests/motion/dense_waypoints.rs, tests/motion/waypoints.rs
 
 use crate::control::motion::cartesian_move::CartesianBounds;
+use crate::scalar::largest;
 use crate::spatial::{Twist, Vec3};
 
 /// Largest number of rounds in which segments are lengthened until their blends fit; random polygons
@@ -282,20 +283,11 @@ fn equal(corners: [Corner; 2], segment: &Segment) -> f64 {
     if fits(most) {
         return most;
     }
-    let (mut low, mut high) = (0.0, most);
     if corners.iter().all(|corner| corner.turning == 0.0) {
         // Then g is proportional to y.
         return 2.0 * segment.time / (corners[0].need(1.0) + corners[1].need(1.0));
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if fits(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    low
+    largest(0.0, most, HALVINGS, fits)
 }
 
 /// One speed on each segment, lowered until half of the blends at its ends fit; where they do not

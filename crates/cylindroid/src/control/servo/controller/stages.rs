@@ -192,7 +192,7 @@ impl Servo {
         self.approaches_type_ii =
             coupled.approaches_type_ii(&self.primary, &self.space, self.options.dt)?;
         if self.approaches_type_ii {
-            brake(&problem, &mut self.primary);
+            brake(&self.last, &self.bounds, &mut self.primary);
             coupled.coupling.actuation.fill(0.0);
             saturation = Saturation { scale: 0.0, direction_lost: false };
         }

@@ -3,25 +3,27 @@
 //! Formula  all joints brake together: from velocities v they rest at q + w v, w = T / 2 + dt, T the
 //!          longest of their stopping times. The motion along x, what is left of the error or the twist,
 //!          is g = x . J v, now and where they rest. If it changes its sign on the way, the tool comes
-//!          back by about w g_rest^2 / 2 (g - g_rest) |x|, in scaled task coordinates. Where this is more
+//!          back by about w g_rest^2 / (2 (g - g_rest) |x|), in scaled task coordinates. Where this is more
 //!          than `NEGLIGIBLE`, v lies between the braked velocities of the last step and those that were
 //!          to follow, as near to these as it may; where the tool moves back already, whichever of the
 //!          two moves it back less
 //! Valid    trees of joints with one coordinate and with acceleration limits
 //! Why so   a step knows the task where it is. Joints that cannot stop there pass the place where the
 //!          tool no longer moves along its twist or towards its target, and it swings
-//! Checked  tests/it/servo/twist.rs, tests/it/servo/just_beyond.rs
+//! Checked  tests/it/servo/twist.rs, tests/it/servo/edge.rs, tests/it/servo/just_beyond.rs
 
 use super::super::projection::TaskProjection;
 use super::super::step::{Aim, Target};
 use super::super::stopping::stopping_time;
 use super::Servo;
 use super::edge_aim::TRACKED;
-use crate::control::solver::saturation::{Problem, brake};
+use crate::control::solver::saturation::brake;
 use crate::linalg::{dot, norm};
+use crate::scalar::largest;
 use crate::spatial::{Pose, Twist};
 
-/// Ways back up to this are none (scaled) [-]: along an edge that bends none at all would leave little speed.
+/// Longest way back that counts as none (scaled) [-]: joints that follow a bent edge always have a short
+/// one, and would creep along it.
 const NEGLIGIBLE: f64 = 2e-4;
 
 /// Halvings of the interval in which the largest share lies.
@@ -64,15 +66,22 @@ impl Servo {
         let mut trial = std::mem::take(&mut self.trial);
         let both = self.primary.iter().zip(&self.secondary);
         trial.iter_mut().zip(both).for_each(|(t, (a, b))| *t = a + b);
-        let turns = self.turns_back(aim, q, &trial);
+        let now = self.along(aim, &trial);
+        let turns = self.turns_back(aim, q, (&trial, now));
         self.trial = trial;
         turns
     }
 
-    /// True if the joints, braked from these velocities (scaled), would carry the tool along what is asked
-    /// and then back.
-    fn turns_back(&mut self, aim: Aim, q: &[f64], rates: &[f64]) -> bool {
-        let now = self.along(aim, rates);
+    /// The part of the motion with these velocities (scaled) along what is asked.
+    fn along(&mut self, aim: Aim, rates: &[f64]) -> f64 {
+        self.load_asked(aim, self.chain.pose());
+        self.task.mul_vec_into(rates, &mut self.achieved_twist);
+        dot(&self.achieved_twist, &self.edge_error)
+    }
+
+    /// True if the joints, braked from these velocities (scaled), which move the tool `now` along what is
+    /// asked, would carry it back.
+    fn turns_back(&mut self, aim: Aim, q: &[f64], (rates, now): (&[f64], f64)) -> bool {
         if now <= 0.0 {
             return false;
         }
@@ -86,9 +95,8 @@ impl Servo {
         for ((rate, column), &c) in joints.zip(self.chain.coordinates()) {
             self.rest_q[c] += rate * column * way;
         }
-        let pose = self.chain.set(&self.rest_q);
-        self.space.load(&self.chain, &mut self.rest_task);
-        self.chain.set(q);
+        let pose = self.rest.set(&self.rest_q);
+        self.space.load(&self.rest, &mut self.rest_task);
         self.load_asked(aim, pose);
         self.rest_task.mul_vec_into(rates, &mut self.achieved_twist);
         let then = dot(&self.achieved_twist, &self.edge_error);
@@ -97,52 +105,36 @@ impl Servo {
         then < 0.0 && back > NEGLIGIBLE * norm(&self.edge_error)
     }
 
-    /// The part of the motion with these velocities (scaled) along what is asked.
-    fn along(&mut self, aim: Aim, rates: &[f64]) -> f64 {
-        self.load_asked(aim, self.chain.pose());
-        self.task.mul_vec_into(rates, &mut self.achieved_twist);
-        dot(&self.achieved_twist, &self.edge_error)
-    }
-
-    /// Slows the velocities of the step (`primary`) such that the joints can stop in time; true if they
-    /// had to be slowed.
+    /// Slows the velocities of the step (`primary`) such that the joints can stop in time. True if they
+    /// had to be slowed or move the tool back: they say nothing about a singularity then.
     pub(super) fn brake_in_time(&mut self, q: &[f64]) -> bool {
         let Some(aim) = self.ending else { return false };
         let mut rates = std::mem::take(&mut self.primary);
-        let along = self.along(aim, &rates);
-        let slows = along < 0.0 || self.turns_back(aim, q, &rates);
+        let now = self.along(aim, &rates);
+        let slows = now < 0.0 || self.turns_back(aim, q, (&rates, now));
         if slows {
             let mut braked = std::mem::take(&mut self.secondary);
-            let (j, bounds, last) = (&self.task, &self.bounds, &self.last);
-            brake(&Problem { j, bounds, last, gain: 1.0, error: &self.error }, &mut braked);
-            let share = match along < 0.0 {
-                true => f64::from(u8::from(self.along(aim, &braked) <= along)),
-                false => self.share_in_time(aim, q, [&braked, &rates]),
+            brake(&self.last, &self.bounds, &mut braked);
+            let then = self.along(aim, &braked);
+            let mix = |share: f64, out: &mut [f64], rates: &[f64]| {
+                for ((out, b), r) in out.iter_mut().zip(&braked).zip(rates) {
+                    *out = b + share * (r - b);
+                }
             };
-            for (r, b) in rates.iter_mut().zip(&braked) {
-                *r = b + share * (*r - b);
-            }
-            self.secondary = braked;
+            let mut trial = std::mem::take(&mut self.trial);
+            let share = if now < 0.0 {
+                f64::from(u8::from(then <= now))
+            } else {
+                largest(0.0, 1.0, HALVINGS, |share| {
+                    mix(share, &mut trial, &rates);
+                    !self.turns_back(aim, q, (&trial, then + share * (now - then)))
+                })
+            };
+            mix(share, &mut trial, &rates);
+            rates.copy_from_slice(&trial);
+            (self.trial, self.secondary) = (trial, braked);
         }
         self.primary = rates;
         slows
-    }
-
-    /// The largest share of the way from the braked velocities to those that were to follow, scaled.
-    fn share_in_time(&mut self, aim: Aim, q: &[f64], [braked, rates]: [&[f64]; 2]) -> f64 {
-        let mut trial = std::mem::take(&mut self.trial);
-        let (mut share, mut most) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (share + most);
-            for ((t, b), r) in trial.iter_mut().zip(braked).zip(rates) {
-                *t = b + middle * (r - b);
-            }
-            match self.turns_back(aim, q, &trial) {
-                true => most = middle,
-                false => share = middle,
-            }
-        }
-        self.trial = trial;
-        share
     }
 }
