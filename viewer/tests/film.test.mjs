@@ -187,9 +187,10 @@ test("a video of the recording has the size of the view, and moves", (t) =>
   visit(["panda"], async (page) => {
     await record(page, "y", 0.2);
     const before = await state(page);
+    const { times } = JSON.parse(await saved(page, "Save the recording as JSON"));
     await enter(page.getByLabel("Frames per second"), 10);
     const name = await page.getByRole("button", { name: /^Save a video/ }).getAttribute("aria-label");
-    assert.equal(name, "Save a video (WEBM)");
+    assert.equal(name, "Save a video (WebM)");
     const bytes = await saved(page, name, "base64");
     const size = await page.evaluate(() => {
       const { width, height } = /** @type {any} */ (window).viewer.stage.renderer.domElement;
@@ -216,10 +217,11 @@ test("a video of the recording has the size of the view, and moves", (t) =>
       video.currentTime = 1e9;
       await next("seeked");
       const last = picture();
-      return { size: [video.videoWidth, video.videoHeight], seconds: video.currentTime, changed: [...last].filter((value, i) => Math.abs(value - (first[i] ?? 0)) > 40).length };
+      return { size: [video.videoWidth, video.videoHeight], seconds: video.duration, changed: [...last].filter((value, i) => Math.abs(value - (first[i] ?? 0)) > 40).length };
     }, bytes);
     assert.deepEqual(seen.size, size);
     assert.ok(seen.changed > 1000, "the robot moves through the video");
+    assert.ok(Math.abs(seen.seconds - times.at(-1)) < 2e-3, `${seen.seconds} s of video, ${times.at(-1)} s of recording`);
     t.diagnostic(`${seen.seconds.toFixed(1)} s, ${(bytes.length * 0.75 / 1e6).toFixed(1)} MB`);
     // A second press ends it, without a file.
     await page.getByRole("button", { name }).click();

@@ -8,7 +8,7 @@ import { icon } from "../icons";
 import { csvOf } from "./csv";
 import { frameTimes, MOST_FRAMES, zipped } from "./frames";
 import type { Recording } from "./recording";
-import { endingOf, filmed, videoType, type Paint } from "./video";
+import { filmed, hasVideo, type Paint } from "./video";
 
 /** What is seen of the robot: as a picture, painted elsewhere, and how large it is (pixels). */
 export type View = { picture: () => Promise<Blob>; paint: Paint; size: () => { width: number; height: number } };
@@ -45,13 +45,12 @@ export class Saves {
       this.button("the plots as PNG", "PNG", () => this.save("png", () => source.plots(), "-plots")),
       this.button("HTML that plays the recording by itself", "HTML", () => this.save("html", (recording) => filmPage(recording, source.look()))),
     ];
-    const type = videoType();
     this.after = h(
       "span", { class: "pictures", role: "group", "aria-label": "Pictures" },
       h(
         "span", { class: "group" },
         this.button("frames as a zip of numbered PNG", this.frames.words, () => void this.saveFrames()),
-        type !== null && this.button(`a video (${endingOf(type).toUpperCase()})`, this.video.words, () => void this.saveVideo(type)),
+        hasVideo() && this.button("a video (WebM)", this.video.words, () => void this.saveVideo()),
       ),
       h("label", { class: "note rate" }, this.rate, " per s"),
     );
@@ -79,12 +78,15 @@ export class Saves {
     });
   }
 
-  private saveVideo(type: string): Promise<void> {
+  private saveVideo(): Promise<void> {
     return this.make(this.video, async ({ scene: { name }, end }, rate, show) => {
       const { paint, size } = this.source.view;
       const { width, height } = size();
-      const video = await filmed(type, { end, rate, width, height }, (time) => show(time, `${fixed(time, 1)} of ${fixed(end, 1)} s`), paint);
-      return video && { blob: video, name: `${name}.${endingOf(type)}` };
+      const times = frameTimes(end, rate);
+      // The video ends where the recording does.
+      if ((times.at(-1) ?? 0) < end) times.push(end);
+      const video = await filmed({ times, rate, width, height }, (time) => show(time, `${fixed(time, 1)} of ${fixed(end, 1)} s`), paint);
+      return video && { blob: video, name: `${name}.webm` };
     });
   }
 

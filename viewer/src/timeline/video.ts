@@ -1,62 +1,65 @@
-/** A recording as a video, which the browser encodes while it is played. */
+/** A recording as a video, encoded picture by picture: none is dropped, however slow the machine. */
 
-/** The first that a browser writes is taken. */
-const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+/** What a browser encodes, and its name in a WebM file; the first that it does is taken. */
+const CODECS = [
+  { codec: "vp09.00.51.08", track: "V_VP9" },
+  { codec: "vp8", track: "V_VP8" },
+];
 /** Of a pixel in a second: sharp edges on a plain background (bits). */
 const BITS = 6;
+/** Pictures that wait for the encoder: each takes the memory of a window. */
+const WAITING = 4;
+/** Microseconds in a second. */
+const MICRO = 1e6;
 
 /** Paints what is seen. */
 export type Paint = (canvas: HTMLCanvasElement) => void;
-/** Times from the first state to the last, pictures of a second, size of a picture (pixels). */
-type Film = { end: number; rate: number; width: number; height: number };
+/** Times from the first state to the last (s), pictures of a second, size of a picture (pixels). */
+type Film = { times: number[]; rate: number; width: number; height: number };
 
-/** The type of file that this browser writes, null where it writes none. */
-export function videoType(): string | null {
-  if (typeof MediaRecorder === "undefined" || !("captureStream" in HTMLCanvasElement.prototype)) return null;
-  return TYPES.find((type) => MediaRecorder.isTypeSupported(type)) ?? null;
+/** Only pages of localhost and of HTTPS have encoders. */
+export function hasVideo(): boolean {
+  return "VideoEncoder" in window;
 }
 
-export function endingOf(type: string): string {
-  return type.startsWith("video/webm") ? "webm" : "mp4";
-}
-
-/** Takes as long as the recording; `show` shows a time, and false ends it without a video. */
-export async function filmed(type: string, { end, rate, width, height }: Film, show: (time: number) => Promise<boolean>, paint: Paint): Promise<Blob | null> {
+/** `show` shows a time, and false ends it without a video. */
+export async function filmed({ times, rate, ...whole }: Film, show: (time: number) => Promise<boolean>, paint: Paint): Promise<Blob | null> {
   // Encoders want even numbers.
-  const canvas = Object.assign(document.createElement("canvas"), { width: width - (width % 2), height: height - (height % 2) });
-  // Streams begin with a picture.
-  if (!(await show(0))) return null;
-  paint(canvas);
-  const stream = canvas.captureStream(0);
-  const [track] = stream.getVideoTracks() as CanvasCaptureMediaStreamTrack[];
-  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS * width * height });
-  const parts: Blob[] = [];
-  recorder.ondataavailable = ({ data }) => parts.push(data);
-  let failed = false;
-  const over = new Promise<void>((resolve) => {
-    recorder.onstop = () => resolve();
-    recorder.onerror = () => (failed = true);
+  const [width, height] = [whole.width - (whole.width % 2), whole.height - (whole.height % 2)];
+  const format = { width, height, framerate: rate, bitrate: BITS * width * height };
+  const { codec, track } = await supported(format);
+  const { ArrayBufferTarget, Muxer } = await import("webm-muxer");
+  const muxer = new Muxer({ target: new ArrayBufferTarget(), video: { codec: track, width, height, frameRate: rate } });
+  let failure: DOMException | null = null;
+  const encoder = new VideoEncoder({
+    output: (chunk, metadata) => muxer.addVideoChunk(chunk, metadata),
+    error: (error) => (failure = error),
   });
-  recorder.start();
-  let isWhole = false;
+  encoder.configure({ codec, ...format });
+  const canvas = Object.assign(document.createElement("canvas"), { width, height });
   try {
-    const begin = performance.now();
-    for (let i = 0; !isWhole; i += 1) {
-      const time = Math.min((performance.now() - begin) / 1000, end);
-      if (failed || !(await show(time))) break;
+    for (const [i, time] of times.entries()) {
+      if (!(await show(time))) return null;
       paint(canvas);
-      track?.requestFrame();
-      isWhole = time === end;
-      // The last picture is seen as long as the others.
-      const next = isWhole ? performance.now() + 1000 / rate : begin + (1000 * (i + 1)) / rate;
-      await new Promise((resolve) => setTimeout(resolve, Math.max(next - performance.now(), 0)));
+      const frame = new VideoFrame(canvas, { timestamp: MICRO * time, duration: MICRO / rate });
+      // A key in each second: players jump to it.
+      encoder.encode(frame, { keyFrame: i % Math.ceil(rate) === 0 });
+      frame.close();
+      while (encoder.encodeQueueSize > WAITING) await new Promise((resolve) => encoder.addEventListener("dequeue", resolve, { once: true }));
     }
+    await encoder.flush();
+  } catch (error) {
+    throw failure ?? error;
   } finally {
-    // An error stops it.
-    if (recorder.state !== "inactive") recorder.stop();
-    track?.stop();
+    if (encoder.state !== "closed") encoder.close();
   }
-  await over;
-  if (failed) throw new Error("the browser could not encode the video");
-  return isWhole ? new Blob(parts, { type }) : null;
+  muxer.finalize();
+  return new Blob([muxer.target.buffer], { type: "video/webm" });
+}
+
+async function supported(format: Omit<VideoEncoderConfig, "codec">): Promise<(typeof CODECS)[number]> {
+  for (const one of CODECS) {
+    if ((await VideoEncoder.isConfigSupported({ codec: one.codec, ...format })).supported) return one;
+  }
+  throw new Error(`the browser encodes no video of ${format.width} x ${format.height} pixels`);
 }

@@ -8,6 +8,7 @@
 //! commands print into the pages.
 
 mod linkages;
+mod programs;
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
