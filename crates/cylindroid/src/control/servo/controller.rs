@@ -455,7 +455,7 @@ impl Servo {
             predictor.reset();
         }
         if let Some(escape) = &mut self.escape {
-            escape.progress.reset();
+            escape.reset();
         }
         if let Some(nearest_pose) = &mut self.nearest_pose {
             nearest_pose.reset();
