@@ -128,6 +128,7 @@ pub struct Servo {
     at_limit: Vec<usize>,
     stall_detector: StallDetector,
     position_stall: StallDetector,
+    squares_stall: StallDetector,
     twist_follower: TwistFollower,
     last_target: Option<Pose>,
     follower: TargetFollower,
@@ -240,6 +241,7 @@ impl Servo {
             at_limit: Vec::with_capacity(n),
             stall_detector: StallDetector::new(),
             position_stall: StallDetector::new(),
+            squares_stall: StallDetector::new(),
             twist_follower: TwistFollower::new(m),
             last_target: None,
             follower: TargetFollower::new(m),
@@ -347,12 +349,14 @@ impl Servo {
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
         let ServoOptions { gain, length, dt, .. } = self.options;
-        let left = gain.position * (position_error / length).powi(2)
+        let scaled = position_error / length + orientation_error;
+        let squares = gain.position * (position_error / length).powi(2)
             + gain.orientation * orientation_error.powi(2);
         // Out of reach the position decides: the orientation may creep on for minutes.
         let out_of_reach = self.is_out_of_reach();
         let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
-        let rests = self.stall_detector.stalled(left.sqrt(), braking, dt);
+        let rests = self.squares_stall.stalled(squares.sqrt(), braking, dt) || out_of_reach;
+        let rests = self.stall_detector.stalled(scaled, braking, dt) && rests;
         let stalled = rests || far || is_left_behind;
         let mut step = Step {
             status: Status::Moving,

@@ -1,9 +1,10 @@
 //! Stall detection: when a servo makes no progress towards its target, and why.
 //!
-//! Formula  stalled when the error e, e^2 = k_p |dp|^2 / L^2 + k_o angle^2 with the gains k (or, out of
-//!          reach, |dp|), has not fallen below (1 - share) of its minimum within the window. The window
-//!          is suspended while a joint accelerates at its limit, and is extended by 4 |v| / A, the time
-//!          in which the weakest joint reverses from its velocity v at the minimum (|v| / A to stop,
+//! Formula  stalled when neither the error e = |dp| / L + |angle| (or, out of reach, |dp|) nor f,
+//!          f^2 = k_p |dp|^2 / L^2 + k_o angle^2 with the gains k, has fallen below (1 - share) of its
+//!          minimum within the window; of targets that are proved to be out of reach e alone decides. The
+//!          window is suspended while a joint accelerates at its limit, and is extended by 4 |v| / A, the
+//!          time in which the weakest joint reverses from its velocity v at the minimum (|v| / A to stop,
 //!          then the way back)
 //! Causes   `OutOfReach`: the target is farther from the first joint than the length of the chain
 //!          (a proof); `Limits`/`Slow`: the error has a component along controllable directions,
@@ -13,8 +14,8 @@
 //! Lost     directions are those that the inverse cuts, or with a singular value below `TRUNCATION`
 //!          of the largest; a gain that is small because of strong damping is not a lost direction
 //! Units    m, rad, s
-//! Why so   no joint velocities J+ K e let this e rise, at any rank. The sum |dp| / L + |angle| does: an
-//!          orientation that has arrived gives way while the position comes on
+//! Why so   joint velocities J+ K e reduce f, at any rank; e rises on good ways, where an orientation that
+//!          has arrived gives way while the position comes on. Out of reach f creeps on for long
 //! Checked  tests/it/servo/stall.rs
 
 use super::stopping::stopping_time;
@@ -36,7 +37,8 @@ pub(super) const POSSIBLE: f64 = 1e-4;
 /// A stall: the reason why the end effector makes no progress towards its target.
 ///
 /// ```text
-/// e^2 = k_p |dp|^2 / L^2 + k_o angle^2;   stalled if e has not fallen by 0.1 % of its minimum within 1 s
+/// e = |dp| / L + |angle|,   f^2 = k_p |dp|^2 / L^2 + k_o angle^2
+/// stalled if neither has fallen by 0.1 % of its minimum within 1 s
 /// ```
 ///
 /// The window is suspended while a joint accelerates at its limit, and extended by 4 |v| / A, the

@@ -158,8 +158,11 @@ fn stall_is_none_while_the_error_falls() {
                     verdict = Some((error, servo.stall()));
                 }
             }
-            // Below a tenth of a millimetre self-motions hold it up.
+            // Below a tenth of a millimetre self-motions hold it up; what is proved is true at once.
             let Some((error, stall)) = verdict.filter(|(error, _)| *error > 1e-4) else { continue };
+            if matches!(stall, Stall::OutOfReach { .. }) {
+                continue;
+            }
             assert!(least > 0.9 * error, "{name} {seed} {reach}: {stall:?}, {error} to {least}");
         }
     }
