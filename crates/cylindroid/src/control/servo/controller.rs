@@ -25,6 +25,7 @@ mod stages;
 mod tracking;
 mod turning_back;
 mod velocity_mode;
+mod verdict;
 
 use super::coupled::Coupled;
 use super::elsewhere::Elsewhere;
@@ -39,7 +40,7 @@ use super::options::ServoOptions;
 use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
 use super::sensor_fit::SensorFit;
-use super::stall::{Stall, StallDetector, StallInputs, classify};
+use super::stall::StallDetector;
 use super::step::{Aim, Status, Step, Target};
 use super::task_space::TaskSpace;
 use super::twist_step::TwistFollower;
@@ -127,6 +128,7 @@ pub struct Servo {
     at_limit: Vec<usize>,
     stall_detector: StallDetector,
     position_stall: StallDetector,
+    squares_stall: StallDetector,
     twist_follower: TwistFollower,
     last_target: Option<Pose>,
     follower: TargetFollower,
@@ -239,6 +241,7 @@ impl Servo {
             at_limit: Vec::with_capacity(n),
             stall_detector: StallDetector::new(),
             position_stall: StallDetector::new(),
+            squares_stall: StallDetector::new(),
             twist_follower: TwistFollower::new(m),
             last_target: None,
             follower: TargetFollower::new(m),
@@ -345,13 +348,16 @@ impl Servo {
         let is_left_behind = self.follow(&target, &desired, pose, braking);
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
-        let scaled = position_error / self.options.length + orientation_error;
-        // Out of reach it is enough that the position does not improve: the orientation may creep on
-        // for minutes.
+        let ServoOptions { gain, length, dt, .. } = self.options;
+        let scaled = position_error / length + orientation_error;
+        let squares = gain.position * (position_error / length).powi(2)
+            + gain.orientation * orientation_error.powi(2);
+        // Out of reach the position decides: the orientation may creep on for minutes.
         let out_of_reach = self.is_out_of_reach();
-        let dt = self.options.dt;
         let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
-        let stalled = self.stall_detector.stalled(scaled, braking, dt) || far || is_left_behind;
+        let rests = self.squares_stall.stalled(squares.sqrt(), braking, dt) || out_of_reach;
+        let rests = self.stall_detector.stalled(scaled, braking, dt) && rests;
+        let stalled = rests || far || is_left_behind;
         let mut step = Step {
             status: Status::Moving,
             pose,
@@ -394,28 +400,6 @@ impl Servo {
             .filter_map(|(&c, kind)| kind.map(|k| (c, k)))
     }
 
-    /// The reason why the last step made no progress towards the target.
-    #[must_use]
-    pub fn stall(&self) -> Stall {
-        let motion = self.coupled.as_ref().and_then(|c| c.uncontrolled());
-        if let Some(motion) = motion.filter(|_| self.approaches_type_ii) {
-            let (share, direction) = (motion.share, motion.direction.clone());
-            return Stall::TypeII { share, direction };
-        }
-        let stall = classify(&StallInputs {
-            svd: &self.svd,
-            gains: &self.gains,
-            error: &self.error,
-            projected_error: &self.projected_error,
-            no_inverse: self.step_projection.reason().filter(|_| self.step_projection.is_stopped()),
-            at_limit: &self.at_limit,
-            distance: self.distance,
-            length: self.length + self.offset_of_free_position(),
-            generic_rank: self.generic_rank,
-        });
-        self.twist_stall(self.slowed_by_limits(stall))
-    }
-
     /// The reason why the requested projection was not used in the last step, but its fallback, or
     /// why the arm was stopped.
     #[must_use]
@@ -455,7 +439,7 @@ impl Servo {
             predictor.reset();
         }
         if let Some(escape) = &mut self.escape {
-            escape.progress.reset();
+            escape.reset();
         }
         if let Some(nearest_pose) = &mut self.nearest_pose {
             nearest_pose.reset();

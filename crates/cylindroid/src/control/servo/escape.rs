@@ -33,6 +33,8 @@ pub(super) struct Escape {
     pub(super) saddle: Saddle,
     /// The desired motion over the gain, scaled.
     pub(super) error: Vec<f64>,
+    /// The motion of the joints to the side to which the arm has begun to fold; zero before.
+    side: Vec<f64>,
 }
 
 /// The linearised task of this step.
@@ -85,11 +87,24 @@ impl Linearised<'_> {
 impl Escape {
     /// For tasks of m components and n joints.
     pub(super) fn new(m: usize, n: usize) -> Self {
-        Self { progress: Progress::new(), saddle: Saddle::new(n), error: vec![0.0; m] }
+        Self {
+            progress: Progress::new(),
+            saddle: Saddle::new(n),
+            error: vec![0.0; m],
+            side: vec![0.0; n],
+        }
+    }
+
+    /// The linearised task progresses.
+    pub(super) fn reset(&mut self) {
+        self.progress.reset();
+        self.side.fill(0.0);
     }
 
     /// True at the edge of reach where the error leads back inside and the linearised task would fold
-    /// the arm to a side with little room to the position limits, although the other one has more.
+    /// the arm to a side with little room to the position limits, although the other one has more. An
+    /// arm that has begun goes on while that side has more, and never back: it would rattle where the room
+    /// ceases to be little.
     pub(super) fn folds_at_limit(&mut self, task: Linearised<'_>, edge: &mut Edge<'_>) -> bool {
         let Some(k) = task.svd.len().checked_sub(1) else { return false };
         if !(task.svd.value(k) < FOLD * task.svd.value(0)) {
@@ -98,14 +113,19 @@ impl Escape {
         let (way, along) = (task.svd.v(k), dot(task.svd.u(k), &self.error));
         let (forwards, backwards) = task.around(edge).room(way);
         let (own, other) = if along > 0.0 { (forwards, backwards) } else { (backwards, forwards) };
-        if !(ROOMIER * own < other && own < QUADRATIC) {
+        let onwards = dot(way, &self.side) * -along.signum();
+        let has_little = ROOMIER * own < other && own < QUADRATIC;
+        if onwards < 0.0 || !(has_little || onwards > 0.0 && own < other) {
             return false;
         }
         let Saddle { hessian, gradient, .. } = &mut self.saddle;
         edge.load(&self.error, hessian);
         hessian.mul_vec_into(way, gradient);
         let curvature = dot(way, gradient) + task.svd.value(k).powi(2);
-        curvature < -OPEN * along.abs()
+        let folds = curvature < -OPEN * along.abs();
+        let sign = if folds { -along.signum() } else { 0.0 };
+        self.side.iter_mut().zip(way).for_each(|(side, v)| *side = sign * v);
+        folds
     }
 
     /// Computes the velocities of an escape, or, where the arm `folds`, of the other side; false if no

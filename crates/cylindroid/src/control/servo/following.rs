@@ -21,7 +21,7 @@ const WINDOW: f64 = 0.25;
 /// Time constant with which the largest speed is forgotten (s).
 const MEMORY: f64 = 1.0;
 /// Share of the target's speed below which the tool neither follows nor approaches [-].
-const FOLLOWED: f64 = 0.1;
+pub(super) const FOLLOWED: f64 = 0.1;
 /// Scaled errors below this are rounding, without a direction [-].
 const ROUNDING: f64 = 1e-9;
 /// Time without progress until the stall is named (s), beside that in which joints reverse.

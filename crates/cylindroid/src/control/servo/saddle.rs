@@ -64,7 +64,7 @@ impl Progress {
     }
 
     /// The linearised task progresses.
-    pub(in crate::control) fn reset(&mut self) {
+    pub(in crate::control) const fn reset(&mut self) {
         (self.mean_share, self.is_lost) = (1.0, false);
     }
 

@@ -1,10 +1,11 @@
 //! Stall detection: when a servo makes no progress towards its target, and why.
 //!
-//! Formula  stalled when the error e = |dp| / L + |angle| (or, out of reach, |dp|) has not fallen
-//!          below (1 - share) of its minimum within the window. The window is suspended while a
-//!          joint accelerates at its limit, and is extended by 4 |v| / A, the time in which the
-//!          weakest joint reverses from its velocity v at the minimum (|v| / A to stop, then the
-//!          way back)
+//! Formula  stalled when neither the error e = |dp| / L + |angle| (or, out of reach, |dp|) nor f,
+//!          f^2 = k_p |dp|^2 / L^2 + k_o angle^2 with the gains k, has fallen below (1 - share) of its
+//!          minimum within the window; of targets that are proved to be out of reach e alone decides. The
+//!          window is suspended while a joint accelerates at its limit, and is extended by 4 |v| / A, the
+//!          time in which the weakest joint reverses from its velocity v at the minimum (|v| / A to stop,
+//!          then the way back)
 //! Causes   `OutOfReach`: the target is farther from the first joint than the length of the chain
 //!          (a proof); `Limits`/`Slow`: the error has a component along controllable directions,
 //!          and joints at their limits do / do not block it; `Singular`: the error lies along
@@ -13,7 +14,9 @@
 //! Lost     directions are those that the inverse cuts, or with a singular value below `TRUNCATION`
 //!          of the largest; a gain that is small because of strong damping is not a lost direction
 //! Units    m, rad, s
-//! Checked  tests/it/servo/stall.rs::stall_*
+//! Why so   joint velocities J+ K e reduce f, at any rank; e rises on good ways, where an orientation that
+//!          has arrived gives way while the position comes on. Out of reach f creeps on for long
+//! Checked  tests/it/servo/stall.rs
 
 use super::stopping::stopping_time;
 use crate::control::solver::bounds::LimitKind;
@@ -27,14 +30,15 @@ const WINDOW: f64 = 1.0;
 const SHARE: f64 = 1e-3;
 /// Times |v| / A that a joint takes to return to its position [-]: 1 + 2 sqrt 2, rounded up.
 pub(super) const TURN_ROUND: f64 = 4.0;
-/// Share of the squared error along controllable directions above which the motion counts as
-/// possible [-].
-const POSSIBLE: f64 = 1e-4;
+/// Share of the squared error along controllable directions above which the motion towards a target that
+/// rests counts as possible [-].
+pub(super) const POSSIBLE: f64 = 1e-4;
 
 /// A stall: the reason why the end effector makes no progress towards its target.
 ///
 /// ```text
-/// e = |dp| / L + |angle|;   stalled if e has not fallen by 0.1 % of its minimum within 1 s
+/// e = |dp| / L + |angle|,   f^2 = k_p |dp|^2 / L^2 + k_o angle^2
+/// stalled if neither has fallen by 0.1 % of its minimum within 1 s
 /// ```
 ///
 /// The window is suspended while a joint accelerates at its limit, and extended by 4 |v| / A, the
@@ -62,7 +66,7 @@ pub enum Stall {
         direction: Vec<f64>,
     },
     /// The arm has fewer independent motions than the task has components; the remaining error lies
-    /// outside their span.
+    /// outside their span, of a twist or of a moving target nine tenths of its square at least.
     TooFewJoints {
         /// Independent motions of the arm at this configuration.
         rank: usize,
@@ -174,6 +178,8 @@ impl StallDetector {
 /// Inputs of the classification.
 #[derive(Debug)]
 pub(super) struct StallInputs<'a> {
+    /// Share of the squared error above which the motion is possible [-].
+    pub(super) possible: f64,
     pub(super) svd: &'a Svd,
     /// Gains of the inverse along each direction.
     pub(super) gains: &'a [f64],
@@ -206,7 +212,7 @@ pub(super) fn classify(e: &StallInputs<'_>) -> Stall {
         (0..e.svd.len()).filter(kept).map(|i| along(i).powi(2)).sum()
     };
     let possible = realised(e.projected_error);
-    if possible > POSSIBLE * total {
+    if possible > e.possible * total {
         return if e.at_limit.is_empty() {
             Stall::Slow
         } else {
@@ -214,7 +220,7 @@ pub(super) fn classify(e: &StallInputs<'_>) -> Stall {
         };
     }
     let direction: Vec<f64> = e.error.iter().map(|x| x / norm).collect();
-    if realised(e.error) > POSSIBLE * total {
+    if realised(e.error) > e.possible * total {
         return Stall::Projected { direction };
     }
     let rank = (0..e.svd.len()).filter(kept).count();

@@ -196,6 +196,24 @@ fn closed_chains_come_to_rest_at_the_edge_of_their_workspace() {
     }
 }
 
+/// Pushed along x with its link held upright a five-bar stops where its two drives have no such motion:
+/// the reason is that there are two, not that it is slow.
+#[test]
+fn a_five_bar_pushed_along_x_has_too_few_joints() {
+    for acceleration in [0.5, 5.0, f64::INFINITY] {
+        let robot = weakened("five-bar", acceleration);
+        for push in [Push::Twist, Push::FedForward] {
+            let mut servo = servo(&robot, |o| o.dt = 1e-2);
+            let motion = pushed((&mut servo, robot.home()), push, Vec3::X, 30.0);
+            let case = format!("{push:?} at {acceleration}: {motion:?}");
+            let Some(Stall::TooFewJoints { rank: 2, task: 3, direction }) = &motion.stall else {
+                panic!("{case}")
+            };
+            assert!(motion.time < 20.0 && direction[0].abs() > 0.9, "{case}");
+        }
+    }
+}
+
 /// Their self-motions do not swing on the way, which held it up for 13 to 22 s.
 #[test]
 fn two_arms_take_the_way_to_the_nearest_pose_straight() {

@@ -40,7 +40,7 @@ pub(super) fn within(robot: &Mechanism, random: &mut Random) -> Vec<f64> {
 }
 
 /// From random starts (none of them at a limit), along every axis; at least this many of ten return,
-/// and none of those that stay away is singular.
+/// none of those that stay away is singular, and for each of them another configuration is found.
 fn returns(name: &str, least: usize) {
     let robot = catalogue::load(name).unwrap();
     let mut options = ServoOptions { dt: 4e-3, ..ServoOptions::new(&robot) };
@@ -60,6 +60,12 @@ fn returns(name: &str, least: usize) {
                 returned += usize::from(is_back);
                 if !is_back {
                     *causes.entry(stall.name()).or_insert(0) += 1;
+                    let found = find_reachable_configuration(&servo, &q, pose, 200).unwrap();
+                    let found = found.unwrap_or_else(|| panic!("{name} {q:?}: none found"));
+                    let there = robot.state(&found.q).unwrap().pose(robot.tool()).unwrap();
+                    let left = there.error_to(pose);
+                    assert!(left.linear.norm() < 1e-6 && left.angular.norm() < 1e-6);
+                    assert_eq!(robot.outside_limits(&found.q).count(), 0);
                     assert!(!matches!(stall, Stall::Singular { .. }), "{name} {q:?}: {stall:?}");
                 }
             }
@@ -92,6 +98,26 @@ fn out_and_back_puma560() {
 #[test]
 fn out_and_back_youbot() {
     returns("youbot", 10);
+}
+
+/// Arms that came back to the side with little room rattled where it ceased to be little, 0.3 to 13 cm
+/// away; they fold to the other side and arrive.
+#[test]
+fn an_arm_that_folds_goes_on() {
+    for (name, seed, direction, dt) in [
+        ("puma560", 1117, Vec3::X, 4e-3),
+        ("youbot", 1095, Vec3::Z, 4e-3),
+        ("panda", 1002, Vec3::Z, 2e-3),
+    ] {
+        let robot = catalogue::load(name).unwrap();
+        let mut options = ServoOptions { dt, ..ServoOptions::new(&robot) };
+        options.secondary = options.default_secondary(&robot).unwrap();
+        let mut q = within(&robot, &mut Random(seed));
+        let pose = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
+        let mut servo = Servo::new(&robot, options).unwrap();
+        let (is_back, stall) = out_and_back(&mut servo, &mut q, pose, direction, |_| ());
+        assert!(is_back, "{name}: {stall:?}");
+    }
 }
 
 /// An elbow that is exactly straight, or folded, has no first-order motion towards the shoulder, and

@@ -12,9 +12,7 @@
 //!          positive
 //! Checked  tests/it/servo/condition.rs
 
-use super::super::stall::Stall;
 use super::Servo;
-use crate::control::solver::bounds::LimitKind;
 use crate::error::{Error, Result};
 use crate::inverse::Inverse;
 use crate::kinematics::ReferenceFrame;
@@ -177,17 +175,6 @@ impl Servo {
             rates[c] = rate / fastest;
         }
         Some(rates)
-    }
-
-    /// A motion that only creeps on while joints stand at position limits is blocked by them.
-    pub(super) fn slowed_by_limits(&self, stall: Stall) -> Stall {
-        let position = |(_, kind): &(usize, LimitKind)| *kind == LimitKind::Position;
-        let coordinates: Vec<usize> =
-            self.active_limits().filter(position).map(|(c, _)| c).collect();
-        match stall {
-            Stall::Slow if !coordinates.is_empty() => Stall::Limits { coordinates },
-            other => other,
-        }
     }
 
     /// Ratio of the smallest to the largest singular value.

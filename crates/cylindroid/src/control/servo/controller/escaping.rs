@@ -36,7 +36,7 @@ impl Servo {
                     escape.progress.record(share, self.options.dt)
                 }
                 Some(_) => {}
-                None => escape.progress.reset(),
+                None => escape.reset(),
             }
         }
         self.load_achieved_twist();

@@ -21,6 +21,7 @@ impl Servo {
         if last != Some(target.pose) {
             self.stall_detector = StallDetector::new();
             self.position_stall = StallDetector::new();
+            self.squares_stall = StallDetector::new();
         }
         let is_fed_forward = target.feed_forward != Twist::ZERO;
         let moved = is_fed_forward || last.is_some_and(|last| last != target.pose);

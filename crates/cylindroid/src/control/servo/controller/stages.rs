@@ -282,7 +282,7 @@ impl Servo {
             }
         }
         if let Some(escape) = &mut self.escape {
-            escape.progress.reset();
+            escape.reset();
         }
         self.active.fill(None);
         self.at_limit.clear();
