@@ -50,7 +50,6 @@ fn only_a_near_pitch_is_the_reason() {
         let options = ScrewOptions::with_length(length);
         let axes = [rotation(Vec3::X), rotation(Vec3::Z), translation(Vec3::Z * length)];
         let system = ScrewSystem::of(&axes, &options).unwrap();
-        println!("{length} {:?} {:?}", system.class(), system.principal_pitches());
         for gap in [0.0, 5e-9, -5e-9] {
             let found = system.existence(gap * length);
             let Some(NoInverse::PrincipalPitch { pitch }) = found.reason else {
