@@ -164,10 +164,6 @@ pub const NOISE_OF_ZERO: f64 = 0.5;
 /// A verdict is flagged when a quantity lies within this factor of its threshold [-].
 pub const AMBIGUOUS: f64 = 1e3;
 
-/// Rounding of the Gram matrix of a pitch form, times the pitch over the characteristic length [-]: its
-/// smallest singular value is known to some roundings of the largest.
-pub const GRAM_ROUNDING: f64 = 16.0 * f64::EPSILON;
-
 /// A projector that enlarges motions by more than this is not used by a servo unless requested [-]:
 /// the realised error would be a thousand times the error to be closed.
 pub const MAX_PROJECTION_NORM: f64 = 1e3;

@@ -22,7 +22,7 @@ use super::projector::coordinates;
 use super::span::{Span, angular};
 use super::system::ScrewSystem;
 use crate::linalg::{Matrix, Svd};
-use crate::tolerance::{AMBIGUOUS, GRAM_ROUNDING};
+use crate::tolerance::AMBIGUOUS;
 
 /// Existence of a hyperbolic pseudoinverse, with its margin.
 #[derive(Debug, Clone, PartialEq)]
@@ -165,6 +165,9 @@ pub struct PitchChoice {
     pub attained: bool,
 }
 
+/// Rounding of the Gram matrix of a pitch form, times the pitch over the characteristic length [-]: its
+/// smallest singular value is known to some roundings of the largest.
+const GRAM_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Pitches beyond this many characteristic lengths are taken for infinite.
 const LARGEST_RATIO: f64 = 1e3;
 /// Pitches looked at on each side of zero: 24 a decade.
