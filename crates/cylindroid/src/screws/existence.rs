@@ -12,7 +12,8 @@
 //! Source   Donelan & Selig, theorems 2 and 3, corollary 4 (the sign of h flips on the reciprocal
 //!          side); the choice of h by |P_h| is ours: the condition of the Gram matrix misleads for
 //!          orders 4 and 5, where it grows with |h| although P_h converges
-//! Checked  tests/it/screws/vectors/normal_forms.rs, tests/it/screws/classes.rs
+//! Checked  tests/it/screws/existence.rs, tests/it/screws/vectors/normal_forms.rs,
+//!          tests/it/screws/classes.rs
 
 use std::fmt;
 
@@ -21,6 +22,7 @@ use super::projector::coordinates;
 use super::span::{Span, angular};
 use super::system::ScrewSystem;
 use crate::linalg::{Matrix, Svd};
+use crate::tolerance::AMBIGUOUS;
 
 /// Existence of a hyperbolic pseudoinverse, with its margin.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,6 +165,9 @@ pub struct PitchChoice {
     pub attained: bool,
 }
 
+/// Rounding of the Gram matrix of a pitch form, times the pitch over the characteristic length [-]: its
+/// smallest singular value is known to some roundings of the largest.
+const GRAM_ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Pitches beyond this many characteristic lengths are taken for infinite.
 const LARGEST_RATIO: f64 = 1e3;
 /// Pitches looked at on each side of zero: 24 a decade.
@@ -201,7 +206,7 @@ impl ScrewSystem {
         let margin =
             if h.is_infinite() { limit_margin(&self.span) } else { self.span.gram_margin(ratio) };
         // The Gram matrix itself is rounded relative to its size.
-        let rounding = if h.is_infinite() { 0.0 } else { 16.0 * f64::EPSILON * ratio.abs() };
+        let rounding = if h.is_infinite() { 0.0 } else { GRAM_ROUNDING * ratio.abs() };
         let threshold = self.tolerance.class.max(rounding);
         // NaN is no pitch, and has no inverse.
         let exists = margin > threshold;
@@ -217,7 +222,7 @@ impl ScrewSystem {
                 return NoInverse::NoLimit { class, order };
             }
             match nearest() {
-                Some(pitch) if (pitch - h).abs() <= 1e3 * threshold * self.scale.length => {
+                Some(pitch) if (pitch - h).abs() <= AMBIGUOUS * threshold * self.scale.length => {
                     NoInverse::PrincipalPitch { pitch }
                 }
                 _ => NoInverse::Close { class, order },

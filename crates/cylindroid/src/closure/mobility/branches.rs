@@ -324,8 +324,9 @@ fn morse(reduction: &LyapunovSchmidt<'_>, h: f64) -> Result<Option<usize>> {
             let Some(near) = reduction.step(&times(x, side))? else { return Ok(None) };
             sum += dot(&near.residual, along.column(0));
         }
-        Ok(Some(sum / (h * h)))
+        Ok(Some(sum))
     };
+    // Times h^2: only its ratios count.
     let mut hessian = Matrix::zeros(k, k);
     // The diagonal first: the other entries follow from sums.
     let pairs = (0..k).map(|i| (i, i)).chain((0..k).flat_map(|i| (0..i).map(move |j| (i, j))));

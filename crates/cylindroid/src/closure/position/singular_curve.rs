@@ -40,6 +40,8 @@ const STEPS_OF_BOX: f64 = 200.0;
 const TURN: f64 = 0.99;
 /// Length of a part of a self-motion by which it is known [rad, or characteristic lengths].
 const SELF_MOTION: f64 = 0.05;
+/// Square of the distance to a segment, over its length, up to which a point lies on it [-].
+const ON_SEGMENT: f64 = 0.01;
 /// Halvings that find the end of a curve at the boundary of its domain.
 const HALVINGS: usize = 60;
 
@@ -117,7 +119,7 @@ fn on_segment(at: &[Vec3], from: &[Vec3], to: &[Vec3]) -> bool {
     }
     let share = clamp(along / square.max(f64::MIN_POSITIVE), 0.0, 1.0);
     let distance = away - 2.0 * share * along + share * share * square;
-    distance <= 0.01 * square + LOCUS_MET
+    distance <= ON_SEGMENT * square + LOCUS_MET
 }
 
 impl CurveTracer {
@@ -183,7 +185,8 @@ impl CurveTracer {
 
     /// True if the singular motion at a point leads to other points, the bounded coordinates at rest.
     fn moves_on(&mut self, at: &CurvePoint) -> Result<bool> {
-        if self.rank_of(&at.svd) > self.rank {
+        // Of higher rank, the system of a curve has no such motion.
+        if at.svd.rank(SURFACE_RANK).rank > self.rank {
             return Ok(false);
         }
         let motion = self.motion_of_unknown(&at.q)?;
@@ -247,7 +250,7 @@ impl CurveTracer {
         let Some(mut tangent) = self.first_tangent(&here, sign) else { return Ok(curve) };
         self.push(&mut curve, here.q.clone())?;
         let mut step = 0.1 * self.longest(&tangent);
-        while curve.points.len() < MAX_POINTS && go_on() {
+        for _ in (1..MAX_POINTS).take_while(|_| go_on()) {
             step = step.min(self.longest(&tangent));
             let next = loop {
                 if step < STEPS.0 {
@@ -402,11 +405,6 @@ impl CurveTracer {
             kernel.iter_mut().zip(motion).for_each(|(x, m)| *x -= along * m);
         }
         kernel
-    }
-
-    /// Rank of the system of a point, at most what it has on a curve.
-    fn rank_of(&self, svd: &Svd) -> usize {
-        svd.rank(SURFACE_RANK).rank.min(self.rank + 1)
     }
 
     /// Newton's method of least norm from a guess; with `self_motion` to the surface of one.

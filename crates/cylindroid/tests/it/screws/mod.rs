@@ -5,6 +5,7 @@ mod classes;
 mod curve;
 mod eigenscrews;
 mod error_form;
+mod existence;
 mod forms;
 mod geometry;
 mod hyperbolic_svd;

@@ -140,3 +140,25 @@ fn wrong_input() {
     // Joints that do nothing do it freely.
     check(&Matrix::zeros(6, 2), Vec3::ZERO, Vec3::X, false, 2, 1e-15);
 }
+
+/// No unit of length changes the answer: per unit of velocity the rates are inversely as large.
+#[test]
+fn the_set_depends_on_no_unit() {
+    let mut random = Random(5);
+    for m in 1..8 {
+        let (j, point, q) = (random.matrix(6, m), random.vec3(1.0), random.vec3(1.0));
+        let plain = point_direction(&j, point, q).unwrap();
+        for unit in [1e-14, 1e14] {
+            let of_row = |i: usize| if i < 3 { unit } else { 1.0 };
+            let scaled = Matrix::from_fn(6, m, |i, c| j[(i, c)] * of_row(i));
+            let found = point_direction(&scaled, point * unit, q).unwrap();
+            assert_eq!(found.still.cols(), plain.still.cols(), "{m} {unit}");
+            let [a, b] =
+                [&found.along, &plain.along].map(|along| along.clone().unwrap_or_default());
+            assert_eq!(a.len(), b.len(), "{m} {unit}");
+            for (a, b) in a.iter().zip(&b) {
+                assert!((a * unit - b).abs() < 1e-9 * (1.0 + b.abs()), "{m} {unit}: {a} {b}");
+            }
+        }
+    }
+}

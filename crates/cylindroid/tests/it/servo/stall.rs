@@ -381,6 +381,37 @@ fn stall_at_a_slide_depends_on_no_unit() {
     }
 }
 
+/// Of joints at their limits those are in the way that would realise a thousandth of the remaining error or
+/// more, at every weight of the joints and for errors of every size.
+#[test]
+fn stall_names_joints_by_their_share_of_the_error() {
+    let mut builder = Mechanism::builder("gantry");
+    for (name, axis, parent) in [("x", Vec3::X, "base"), ("y", Vec3::Y, "x_link")] {
+        builder.joint(JointSpec {
+            axis,
+            limits: Limits { lower: -1.0, upper: 0.0, ..Limits::NONE },
+            ..JointSpec::new(name, JointKind::Prismatic, parent, &format!("{name}_link"))
+        });
+    }
+    builder.frame("tool", "y_link", Pose::from_translation(Vec3::X)).tool("tool");
+    let robot = builder.build().unwrap();
+    for weight in [1e-6, 1.0, 1e6] {
+        let mut servo = servo(&robot, |o| {
+            o.task = Task::named("x,y", &robot).unwrap();
+            o.joint_weights = vec![weight; 2];
+        });
+        for beyond in [1e-6, 1e-3, 1.0] {
+            for (share, named) in [(5e-3, vec![0, 1]), (2e-4, vec![0])] {
+                servo.reset();
+                let target = Vec3::new(1.0 + beyond, share * beyond, 0.0);
+                servo.step(&[0.0, 0.0], Pose::from_translation(target)).unwrap();
+                let expected = Stall::Limits { coordinates: named };
+                assert_eq!(servo.stall(), expected, "{weight} {beyond} {share}");
+            }
+        }
+    }
+}
+
 /// A Panda beside a pose that it does not reach: it swung about the nearest one with 2 rad/s for ever.
 #[test]
 fn a_swing_about_the_nearest_pose_dies_out() {

@@ -288,11 +288,11 @@ fn wrong_custom_tasks_are_errors() {
             error: &mut [f64],
             jacobian: &mut Matrix,
         ) -> Result<(), Error> {
-            error[0] = 0.1;
+            error[0] = if self.0 == 3 { 1e200 } else { 0.1 };
             match self.0 {
                 0 => *jacobian = Matrix::zeros(1, 1),
                 1 => jacobian[(0, 0)] = f64::NAN,
-                2 => jacobian.as_mut_slice().fill(1e200),
+                2 | 3 => jacobian.as_mut_slice().fill(1e200),
                 _ => error[0] = state.q()[0] + 1e300,
             }
             Ok(())
@@ -303,7 +303,7 @@ fn wrong_custom_tasks_are_errors() {
         }
     }
     let robot = two_armed();
-    for kind in 0..4 {
+    for kind in 0..5 {
         let task = MotionTask::new("wrong", TaskObjective::Custom(Box::new(Wrong(kind))));
         let mut servo = TaskServo::new(&robot, vec![task], options(&robot)).unwrap();
         let error = servo.step(&vec![0.0; robot.n()]).unwrap_err().to_string();
