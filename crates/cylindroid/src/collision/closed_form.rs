@@ -62,13 +62,13 @@ fn segments(a: Placed<'_>, h: f64, b: Placed<'_>, k: f64) -> Separation {
         s = clamp(cosine * t - along_u, -h, h);
     }
     between(c + u * s, d + v * t, || {
+        // Across both: the centres are on neither side.
         let normal = cross.unit(ZERO_SEPARATION).or_else(|| {
             // Collinear, and over one another: any direction across.
             let other = if u.x.abs() < 0.5 { Vec3::X } else { Vec3::Y };
             u.cross(other).unit(ZERO_SEPARATION)
         });
-        let normal = normal.unwrap_or(Vec3::Z);
-        if normal.dot(w) > 0.0 { -normal } else { normal }
+        normal.unwrap_or(Vec3::Z)
     })
 }
 

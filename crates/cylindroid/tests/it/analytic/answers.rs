@@ -7,7 +7,7 @@ use cylindroid::ik::{Analytic, AnalyticSolution, Goal, IkOptions, solve_distinct
 use cylindroid::model::Limits;
 use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
-use super::arms::{STRUCTURES, arm, published, random_arm};
+use super::arms::{STRUCTURES, arm, published, random_arm, unit, ur};
 use super::law::{apart, condition, confirm, known_postures_are_found};
 use crate::support::Random;
 
@@ -36,6 +36,43 @@ fn random_arms_of_every_structure() {
             let ik = Analytic::of(&robot, robot.tool()).unwrap();
             assert!(ik.geometry().to_string() == name && ik.is_exact(), "{} {name}", ik.geometry());
             known_postures_are_found(&robot, &mut random, 100);
+        }
+    }
+}
+
+/// Nor does the unit of length, for arms with three parallel axes.
+#[test]
+fn units_change_nothing() {
+    let mut random = Random(74);
+    for k in 0..6 {
+        let (mut axes, mut tool) = ur([-0.425, -0.392_25], [0.089_159, 0.109_15, 0.094_65, 0.0823]);
+        if k > 0 {
+            axes = std::array::from_fn(|_| (unit(&mut random), random.vec3(0.5)));
+            (axes[2].0, axes[3].0) = (axes[1].0, -axes[1].0);
+            tool = random.pose();
+        }
+        let arms = [1.0, 1e-6, 1e6].map(|scale| {
+            let axes = axes.map(|(direction, point)| (direction, point * scale));
+            let tool = Pose { translation: tool.translation * scale, ..tool };
+            arm(&axes, Pose::IDENTITY, tool, Limits::NONE)
+        });
+        for _ in 0..20 {
+            let (q, start) = (random.vector(6), random.vector(6));
+            let [own, others @ ..] = arms.each_ref().map(|robot| {
+                let target = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
+                let mut ik = Analytic::of(robot, robot.tool()).unwrap();
+                let answers = ik.solve(target, &start).unwrap();
+                confirm(robot, target, &answers);
+                answers
+            });
+            for answers in others {
+                assert_eq!(answers.len(), own.len(), "{k} {q:?}");
+                for answer in answers.iter() {
+                    let near =
+                        own.iter().any(|a| apart(&a.q, &answer.q) < 1e-5 && a.free == answer.free);
+                    assert!(near, "{k} {q:?}: {answer:?}");
+                }
+            }
         }
     }
 }

@@ -116,3 +116,28 @@ fn a_twist_outwards_is_a_stall() {
         assert!(matches!(servo.stall(), Stall::Singular { .. }), "{:?}", servo.stall());
     }
 }
+
+/// A target that circles beyond reach is followed along the edge, at its angle.
+#[test]
+fn a_tool_at_the_edge_keeps_pace() {
+    let robot = planar(2);
+    for gain in [2.0, 5.0] {
+        let mut servo = servo(&robot, |o| {
+            (o.dt, o.acceleration, o.task) = (DT, Some(20.0), Task::POSITION);
+            o.gain = ServoGains { position: gain, orientation: gain };
+        });
+        let (mut q, speed) = (vec![-1.2, 0.4], 0.3);
+        for i in 0..(7.0 / DT) as usize {
+            let time = i as f64 * DT;
+            let angle = -1.0 + speed * time;
+            let out = Vec3::new(angle.cos(), angle.sin(), 0.0) * 2.2;
+            let feed_forward = Twist { linear: Vec3::Z.cross(out) * speed, angular: Vec3::ZERO };
+            let target = Target { pose: Pose::from_translation(out), feed_forward };
+            servo.step(&q, target).unwrap();
+            let at = robot.state(&q).unwrap().pose(robot.tool()).unwrap().translation;
+            servo.advance(&mut q);
+            let behind = angle - at.y.atan2(at.x);
+            assert!(time < 3.0 || behind.abs() < 0.02, "{gain} {time} s: {behind} rad");
+        }
+    }
+}

@@ -35,14 +35,16 @@ fn findings_stay_mended() {
     assert_eq!(unclear_coarse, 0, "eighths leave ranks unclear");
 }
 
-/// A direction that is too weak to take part in steps holds no bound for the levels after it.
+/// A direction that is too weak to take part in steps holds no bound for the levels after it, whatever its
+/// unit.
 #[test]
 fn weak_directions_hold_no_bounds() {
-    let units = |i: usize| (0..3).map(|j| f64::from(u8::from(i == j))).collect();
-    let (lower, upper) = (vec![-1.0; 3], vec![0.0, 0.0, 1.0]);
-    let rows = (0..3).map(units).collect();
-    let problem = Problem { n: 3, boxed: true, rows, lower, upper, levels: Vec::new() };
-    for weak in [1e-7, 1e-8, 0.0] {
+    for (weak, unit) in [1e-7, 1e-8, 0.0].into_iter().flat_map(|w| [1.0, 1e6, 1e-6].map(|u| (w, u)))
+    {
+        let row = |i: usize| (0..3).map(|j| if i == j { unit } else { 0.0 }).collect();
+        let (lower, upper) = (vec![-unit; 3], vec![0.0, 0.0, unit]);
+        let (boxed, rows) = (unit == 1.0, (0..3).map(row).collect());
+        let problem = Problem { n: 3, boxed, rows, lower, upper, levels: Vec::new() };
         let mut set = problem.active_set();
         // At the upper bounds of the first two.
         assert!(set.start(&[5.0, 5.0, 0.0]));
@@ -53,7 +55,8 @@ fn weak_directions_hold_no_bounds() {
             set.solve(&mut level, Precision::STRAIGHT);
         }
         let y = set.point();
-        assert!(y[0].abs() < 1e-12 && (y[1] + 0.5).abs() < 1e-6, "{weak}: {y:?}");
+        let is_reached = y[0].abs() < 1e-12 && (y[1] + 0.5).abs() < 1e-6;
+        assert!(is_reached, "{weak} {unit}: {y:?}");
     }
 }
 
