@@ -9,6 +9,7 @@
 use super::matrix::Matrix;
 use super::qr::Qr;
 use crate::error::{Error, Result};
+use crate::scalar::power_of_two;
 
 /// A positive definite quadratic form, stored as its lower Cholesky factor L.
 #[doc(alias = "Cholesky")]
@@ -100,7 +101,7 @@ impl Metric {
                 x[i] = (x[i] - sum) / self.l[(i, i)];
             }
         }
-        Self::of_upper(&Qr::plain(inverse).r())
+        Self::of_square_root(inverse)
     }
 
     /// `B^T M B`: the metric of coordinates y of a subspace, `x = B y`.
@@ -122,7 +123,7 @@ impl Metric {
         }
         let mut whitened = basis.clone();
         self.whiten_rows(&mut whitened);
-        let metric = Self::of_upper(&Qr::plain(whitened).r());
+        let metric = Self::of_square_root(whitened);
         if (0..metric.len()).any(|i| !(metric.l[(i, i)] > 0.0)) {
             return Err(refuse("its columns are dependent; remove the redundant ones"));
         }
@@ -138,9 +139,14 @@ impl Metric {
         Ok(self.dual().restricted(name, &map.transpose())?.dual())
     }
 
-    /// The metric `R^T R` of an upper triangular R.
-    fn of_upper(r: &Matrix) -> Self {
-        let entry = |i: usize, j: usize| if i >= j { r[(j, i)] * r[(j, j)].signum() } else { 0.0 };
+    /// The metric `A^T A`, scaled meanwhile so that squares neither overflow nor vanish.
+    fn of_square_root(mut a: Matrix) -> Self {
+        let scale = power_of_two(a.max_abs());
+        a.as_mut_slice().iter_mut().for_each(|x| *x /= scale);
+        let r = Qr::plain(a).r();
+        let entry = |i: usize, j: usize| {
+            if i >= j { scale * (r[(j, i)] * r[(j, j)].signum()) } else { 0.0 }
+        };
         Self { l: Matrix::from_fn(r.cols(), r.cols(), entry) }
     }
 

@@ -21,6 +21,7 @@ use super::blocks::add_through;
 use super::jacobi::{Rotations, Start};
 use super::matrix::Matrix;
 use super::small_gemm::{AlignedColumns, LANES};
+use crate::scalar::power_of_two;
 use crate::tolerance::MACHINE_RANK;
 
 /// Warm starts between two repairs of W and of how it turned, which drift by a rounding each time.
@@ -124,7 +125,7 @@ impl Svd {
             return;
         }
         // Scaled by a power of two, which is exact, so that squares neither overflow nor vanish.
-        let scale = power_of_two_below(size);
+        let scale = power_of_two(size);
         let (start, left) = match self.warm {
             None => (Start::Cold, WARM_STARTS),
             Some(0) => (Start::Repaired, WARM_STARTS),
@@ -324,9 +325,4 @@ fn size(a: &Matrix) -> f64 {
     }
     let sum = sums.iter().sum::<f64>() + rest.iter().map(|x| x.abs()).sum::<f64>();
     if sum == f64::INFINITY { a.max_abs() } else { sum }
-}
-
-fn power_of_two_below(x: f64) -> f64 {
-    // The exponent bits alone; subnormal numbers use the smallest normal power.
-    f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000).max(f64::MIN_POSITIVE)
 }

@@ -43,6 +43,12 @@ pub(crate) fn arithmetic() -> &'static str {
     std::env::consts::ARCH
 }
 
+/// The power of two below a size, within the normal numbers: scaling by it is exact.
+pub(crate) fn power_of_two(size: f64) -> f64 {
+    let exponent = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
+    clamp(exponent, f64::MIN_POSITIVE, f64::MAX)
+}
+
 /// The largest number between one that fits and one that does not, after so many halvings.
 pub(crate) fn largest(
     fitting: f64,

@@ -9,7 +9,6 @@
 //! Checked  tests/it/screws/
 
 use crate::linalg::{Matrix, Svd, SymmetricEigen};
-use crate::scalar::clamp;
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{FREE_TRANSLATION, NEARLY_PARALLEL};
 
@@ -67,12 +66,6 @@ pub(crate) fn dot(a: &[f64; 6], b: &[f64; 6]) -> f64 {
 /// The size of a twist: the larger of its parts, the linear one over `length`.
 pub(crate) fn size(t: Twist, length: f64) -> f64 {
     (t.linear.norm() / length).max(t.angular.norm())
-}
-
-/// The power of two below a size, within the normal numbers.
-pub(crate) fn power_of_two(size: f64) -> f64 {
-    let exponent = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
-    clamp(exponent, f64::MIN_POSITIVE, f64::MAX)
 }
 
 pub(crate) fn over(t: Twist, a: f64) -> Twist {

@@ -8,10 +8,10 @@
 //!          the thresholds include the distance to the centre
 //! Checked  tests/it/screws/classes.rs
 
-use super::span::{Scale, Span, angular, dot, least_squares_center, over, power_of_two, size};
+use super::span::{Scale, Span, angular, dot, least_squares_center, over, size};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank, Svd};
-use crate::scalar::clamp;
+use crate::scalar::{clamp, power_of_two};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{
     AMBIGUOUS, CENTER_FOUND, FAR_AXIS, FAR_ORIGIN, NOISE_CLASS, NOISE_CONDITION, NOISE_OF_ZERO,

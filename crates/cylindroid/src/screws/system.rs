@@ -17,10 +17,11 @@
 use super::class::{Class, NormalForm};
 use super::classify::{Classified, Margin, classify, placed};
 use super::screw::{Line, Screw};
-use super::span::{Scale, Span, dot, join, over, power_of_two, size};
+use super::span::{Scale, Span, dot, join, over, size};
 use super::span_estimation::{ScrewOptions, Tolerances, columns, six, spanned};
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Rank};
+use crate::scalar::power_of_two;
 use crate::spatial::{Pose, Twist, Vec3};
 use crate::tolerance::NOISE_OF_ZERO;
 

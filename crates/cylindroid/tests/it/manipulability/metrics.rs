@@ -124,6 +124,17 @@ fn lopsided_metrics() {
                 .collect();
             assert_close(&case.name, &ratio, &vec![1.0; ratio.len()], 1e-10);
         }
+        // So do those whose roots have no square.
+        for factor in [1e-320, 1e-310, 1e308] {
+            let object = Metric::diagonal("Wu", &vec![factor; relation.object()]).unwrap();
+            let metrics = Metrics { object: Some(object), ..Metrics::UNIT };
+            let m = Manipulability::of(&relation, &metrics).unwrap();
+            let unit = Manipulability::of(&relation, &Metrics::UNIT).unwrap();
+            assert_eq!(m.kinematic.zeros.cols(), unit.kinematic.zeros.cols(), "{factor:e}");
+            assert_eq!(m.kinematic.finite.len(), unit.kinematic.finite.len(), "{factor:e}");
+            let mut numbers = m.kinematic.zeros.as_slice().iter();
+            assert!(numbers.all(|x| x.is_finite()), "{factor:e} {}", case.name);
+        }
         for size in [1e8, 1e30, 1e150] {
             let mixed: Vec<f64> = (0..relation.object())
                 .map(|i| if i % 2 == 0 { 1.0 / size } else { size })
