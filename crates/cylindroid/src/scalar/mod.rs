@@ -14,6 +14,7 @@ mod bracket;
 mod cpu;
 mod fnv1a;
 mod plain;
+mod power_of_two;
 mod simd;
 mod splitmix64;
 mod trig;
@@ -27,6 +28,7 @@ pub(crate) use bracket::Bracket;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use cpu::{Avx2, Avx512};
 pub(crate) use fnv1a::fnv1a;
+pub(crate) use power_of_two::power_of_two;
 pub(crate) use simd::{MAX_LANES, Simd, Simd4, SimdFloat};
 pub(crate) use splitmix64::uniform;
 pub(crate) use trig::{atan2, sin_cos};
@@ -41,12 +43,6 @@ pub(crate) fn arithmetic() -> &'static str {
         return "x86_64 with fused multiply-add";
     }
     std::env::consts::ARCH
-}
-
-/// The power of two below a size, within the normal numbers: scaling by it is exact.
-pub(crate) fn power_of_two(size: f64) -> f64 {
-    let exponent = f64::from_bits(size.to_bits() & f64::INFINITY.to_bits());
-    clamp(exponent, f64::MIN_POSITIVE, f64::MAX)
 }
 
 /// The largest number between one that fits and one that does not, after so many halvings.
