@@ -83,8 +83,8 @@ export class Saves {
       const { paint, size } = this.source.view;
       const { width, height } = size();
       const times = frameTimes(end, rate);
-      // The video ends where the recording does.
-      if ((times.at(-1) ?? 0) < end) times.push(end);
+      // The video ends where the recording does, to the milliseconds of its file.
+      if (end - (times.at(-1) ?? 0) > 1e-3) times.push(end);
       const video = await filmed({ times, rate, width, height }, (time) => show(time, `${fixed(time, 1)} of ${fixed(end, 1)} s`), paint);
       return video && { blob: video, name: `${name}.webm` };
     });

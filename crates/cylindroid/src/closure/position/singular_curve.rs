@@ -40,7 +40,7 @@ const STEPS_OF_BOX: f64 = 200.0;
 const TURN: f64 = 0.99;
 /// Length of a part of a self-motion by which it is known [rad, or characteristic lengths].
 const SELF_MOTION: f64 = 0.05;
-/// Square of the distance to a segment, over its length, up to which a point lies on it [-].
+/// Square of the distance to a segment over the square of its length, up to which a point lies on it [-].
 const ON_SEGMENT: f64 = 0.01;
 /// Halvings that find the end of a curve at the boundary of its domain.
 const HALVINGS: usize = 60;

@@ -134,6 +134,12 @@ fn lopsided_metrics() {
             assert_eq!(m.kinematic.finite.len(), unit.kinematic.finite.len(), "{factor:e}");
             let mut numbers = m.kinematic.zeros.as_slice().iter();
             assert!(numbers.all(|x| x.is_finite()), "{factor:e} {}", case.name);
+            for (a, b) in m.kinematic.values().iter().zip(unit.kinematic.values()) {
+                // Of 1e-320 three digits are left; efficiencies beyond the largest number are infinite.
+                let (scaled, digits) = (b * factor, if factor < 1e-315 { 1e-2 } else { 1e-10 });
+                let is_close = (a - scaled).abs() <= digits * scaled || *a == scaled;
+                assert!(is_close, "{factor:e} {}: {a:e} for {scaled:e}", case.name);
+            }
         }
         for size in [1e8, 1e30, 1e150] {
             let mixed: Vec<f64> = (0..relation.object())
