@@ -40,7 +40,7 @@ use super::options::ServoOptions;
 use super::plant::Predictor;
 use super::projection::{StepProjection, TaskFrame};
 use super::sensor_fit::SensorFit;
-use super::stall::StallDetector;
+use super::stall::{Remainder, StallDetector};
 use super::step::{Aim, Status, Step, Target};
 use super::task_space::TaskSpace;
 use super::twist_step::TwistFollower;
@@ -127,8 +127,6 @@ pub struct Servo {
     active: Vec<Option<LimitKind>>,
     at_limit: Vec<usize>,
     stall_detector: StallDetector,
-    position_stall: StallDetector,
-    squares_stall: StallDetector,
     twist_follower: TwistFollower,
     last_target: Option<Pose>,
     follower: TargetFollower,
@@ -240,8 +238,6 @@ impl Servo {
             approaches_type_ii: false,
             at_limit: Vec::with_capacity(n),
             stall_detector: StallDetector::new(),
-            position_stall: StallDetector::new(),
-            squares_stall: StallDetector::new(),
             twist_follower: TwistFollower::new(m),
             last_target: None,
             follower: TargetFollower::new(m),
@@ -348,16 +344,15 @@ impl Servo {
         let is_left_behind = self.follow(&target, &desired, pose, braking);
         let (position_error, orientation_error) =
             (desired.error.linear.norm(), desired.error.angular.norm());
-        let ServoOptions { gain, length, dt, .. } = self.options;
-        let scaled = position_error / length + orientation_error;
-        let squares = gain.position * (position_error / length).powi(2)
-            + gain.orientation * orientation_error.powi(2);
-        // Out of reach the position decides: the orientation may creep on for minutes.
-        let out_of_reach = self.is_out_of_reach();
-        let far = self.position_stall.stalled(position_error, braking, dt) && out_of_reach;
-        let rests = self.squares_stall.stalled(squares.sqrt(), braking, dt) || out_of_reach;
-        let rests = self.stall_detector.stalled(scaled, braking, dt) && rests;
-        let stalled = rests || far || is_left_behind;
+        let left = Remainder {
+            position: position_error,
+            orientation: orientation_error,
+            length: self.options.length,
+            gain: self.options.gain,
+            is_out_of_reach: self.is_out_of_reach(),
+        };
+        let rests = self.stall_detector.stalled(left, braking, self.options.dt);
+        let stalled = rests || is_left_behind;
         let mut step = Step {
             status: Status::Moving,
             pose,

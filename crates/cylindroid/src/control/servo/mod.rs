@@ -41,7 +41,7 @@ pub(super) use loop_motions::{LoopMotions, nothing_actuated};
 pub(super) use plant::{Predictor, SimulatedRobot};
 pub(super) use saddle::{Progress, Saddle, Surroundings};
 pub(super) use secondary::{SecondaryVelocities, add_posture};
-pub(super) use stall::{BrakingState, StallDetector};
+pub(super) use stall::{BrakingState, Remainder, StallDetector};
 pub(super) use stopping::jerk_limited_stopping_velocity;
 pub(super) use task_space::{TaskScaling, TaskSpace, is_locked};
 

@@ -1,11 +1,11 @@
 //! Stall detection: when a servo makes no progress towards its target, and why.
 //!
-//! Formula  stalled when neither the error e = |dp| / L + |angle| (or, out of reach, |dp|) nor f,
-//!          f^2 = k_p |dp|^2 / L^2 + k_o angle^2 with the gains k, has fallen below (1 - share) of its
-//!          minimum within the window; of targets that are proved to be out of reach e alone decides. The
-//!          window is suspended while a joint accelerates at its limit, and is extended by 4 |v| / A, the
-//!          time in which the weakest joint reverses from its velocity v at the minimum (|v| / A to stop,
-//!          then the way back)
+//! Formula  stalled when neither the error e = |dp| / L + |angle| nor f, f^2 = k_p |dp|^2 / L^2 +
+//!          k_o angle^2 with the gains k, has fallen below (1 - share) of its minimum within the window; of
+//!          targets that are proved to be out of reach when either e or |dp| has not. The window is
+//!          suspended while a joint accelerates at its limit, and is extended by 4 |v| / A, the time in
+//!          which the weakest joint reverses from its velocity v at the minimum (|v| / A to stop, then the
+//!          way back)
 //! Causes   `OutOfReach`: the target is farther from the first joint than the length of the chain
 //!          (a proof); `Limits`/`Slow`: the error has a component along controllable directions,
 //!          and joints at their limits do / do not block it; `Singular`: the error lies along
@@ -18,6 +18,7 @@
 //!          has arrived gives way while the position comes on. Out of reach f creeps on for long
 //! Checked  tests/it/servo/stall.rs
 
+use super::options::ServoGains;
 use super::stopping::stopping_time;
 use crate::control::solver::bounds::LimitKind;
 use crate::linalg::Svd;
@@ -113,9 +114,32 @@ impl Stall {
     }
 }
 
-/// Detects that the error no longer falls.
+/// What is left of a motion towards a pose.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::control) struct Remainder {
+    /// Of the position (m).
+    pub(in crate::control) position: f64,
+    /// Of the orientation (rad).
+    pub(in crate::control) orientation: f64,
+    /// Characteristic length L (m).
+    pub(in crate::control) length: f64,
+    pub(in crate::control) gain: ServoGains,
+    /// True where no configuration reaches the pose: the position decides, for the orientation may creep
+    /// on for minutes.
+    pub(in crate::control) is_out_of_reach: bool,
+}
+
+/// Detects that a motion towards a pose makes no progress.
 #[derive(Debug, Clone)]
 pub(in crate::control) struct StallDetector {
+    sum: Fall,
+    squares: Fall,
+    position: Fall,
+}
+
+/// The least value of an error and the time since then.
+#[derive(Debug, Clone)]
+struct Fall {
     best: f64,
     since: f64,
     window: f64,
@@ -147,22 +171,38 @@ impl BrakingState {
 
 impl StallDetector {
     pub(in crate::control) const fn new() -> Self {
-        Self { best: f64::INFINITY, since: 0.0, window: WINDOW }
+        Self { sum: Fall::NONE, squares: Fall::NONE, position: Fall::NONE }
     }
 
     /// The share of its speed that a way to the nearest pose keeps which has brought no progress for twice
     /// the time in which a stall is named: one that swings about the pose comes to rest.
     pub(in crate::control) fn patience(&self) -> f64 {
-        (2.0 * self.window / self.since).powi(4).min(1.0)
+        (2.0 * self.sum.window / self.sum.since).powi(4).min(1.0)
     }
 
-    /// Records the error of a step of `dt` seconds; true if stalled.
+    /// Records what is left after a step of `dt` seconds; true if stalled.
     pub(in crate::control) fn stalled(
         &mut self,
-        error: f64,
+        left: Remainder,
         braking: BrakingState,
         dt: f64,
     ) -> bool {
+        let Remainder { position, orientation, length, gain, is_out_of_reach } = left;
+        let sum = position / length + orientation;
+        let squares =
+            gain.position * (position / length).powi(2) + gain.orientation * orientation.powi(2);
+        let position = self.position.has_ended(position, braking, dt);
+        let squares = self.squares.has_ended(squares.sqrt(), braking, dt);
+        let sum = self.sum.has_ended(sum, braking, dt);
+        if is_out_of_reach { position || sum } else { squares && sum }
+    }
+}
+
+impl Fall {
+    const NONE: Self = Self { best: f64::INFINITY, since: 0.0, window: WINDOW };
+
+    /// Records the error; true if it has not fallen for the window.
+    fn has_ended(&mut self, error: f64, braking: BrakingState, dt: f64) -> bool {
         if error < self.best * (1.0 - SHARE) {
             let window = WINDOW + TURN_ROUND * braking.stopping_time;
             *self = Self { best: error, since: 0.0, window };

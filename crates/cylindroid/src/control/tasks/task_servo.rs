@@ -28,8 +28,8 @@ use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOpt
 use super::twist_command::TwistCommand;
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{
-    BrakingState, DefaultLimits, Plant, Predictor, StallDetector, Status, acceleration_of,
-    limits_of_servo,
+    BrakingState, DefaultLimits, Plant, Predictor, Remainder, ServoGains, StallDetector, Status,
+    acceleration_of, limits_of_servo,
 };
 use crate::control::solver::active_set::ActiveSet;
 use crate::control::solver::bounds::{LimitKind, VelocityBounds};
@@ -448,7 +448,6 @@ impl TaskServo {
             let [position_error, orientation_error] = parts.map(f64::sqrt);
             let own = |stack: &Stack| stack.members.iter().position(|m| m.task == i);
             let member = self.stacks.iter().find_map(|s| Some((s, &s.members[own(s)?])));
-            let scaled = position_error / self.options.length + orientation_error;
             let follows = self.twists[i].is_some_and(|twist| twist.desired() != Twist::ZERO);
             let reached = !follows
                 && position_error <= task.tolerance.position
@@ -465,7 +464,14 @@ impl TaskServo {
             if is_followed {
                 self.detectors[i] = StallDetector::new();
             }
-            let stalled = self.detectors[i].stalled(scaled, braking, self.options.dt);
+            let left = Remainder {
+                position: position_error,
+                orientation: orientation_error,
+                length,
+                gain: ServoGains { position: task.gain, orientation: task.gain },
+                is_out_of_reach: false,
+            };
+            let stalled = self.detectors[i].stalled(left, braking, self.options.dt);
             let status = match (reached, stalled) {
                 (true, _) => Status::Reached,
                 (false, true) => Status::Stalled,

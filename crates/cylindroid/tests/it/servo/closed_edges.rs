@@ -31,8 +31,11 @@ impl Push {
 pub(super) struct ToTheEdge {
     /// Time until the stall is named, or the target reached, for good (s).
     pub(super) time: f64,
-    /// Motion backwards.
+    /// Motion of the position backwards, over the reach.
     pub(super) back: f64,
+    /// By how much the scaled error rises in all, towards targets at rest: that of a pose may fall while the
+    /// position gives way to the orientation.
+    pub(super) rise: f64,
     /// Reversals of more than 1e-4.
     turns: usize,
     pub(super) stall: Option<Stall>,
@@ -94,23 +97,25 @@ pub(super) fn pushed(
     seconds: f64,
 ) -> ToTheEdge {
     let robot = &servo.mechanism().clone();
-    let ServoOptions { dt, end_effector, .. } = *servo.options();
+    let ServoOptions { dt, end_effector, length, .. } = *servo.options();
     let mut q =
         if robot.is_closed() { assemble(robot, start, &[]).unwrap().q } else { start.into() };
     let home = robot.state(&q).unwrap().pose(end_effector).unwrap();
     let (reach, speed) = (robot.reach(), direction * (0.1 * robot.reach()));
     let ends = [q.clone(), q.clone()];
     let (time, place) = (f64::INFINITY, home.translation);
-    let mut motion = ToTheEdge { time, back: 0.0, turns: 0, stall: None, ends, place, speed: 0.0 };
+    let mut motion =
+        ToTheEdge { time, back: 0.0, rise: 0.0, turns: 0, stall: None, ends, place, speed: 0.0 };
     let (mut last, mut extreme, mut forwards) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 1.0);
+    let mut last_error = f64::INFINITY;
     for i in 0..(seconds / dt) as usize {
         let time = i as f64 * dt;
         let twist = Twist { linear: speed, angular: Vec3::ZERO };
         let at = |place: Vec3| Pose { translation: place, ..home };
-        let (pose, error, status) = if push == Push::Twist {
+        let (pose, [error, angle], status) = if push == Push::Twist {
             let step = servo.step_twist(&q, Some(twist)).unwrap();
             let is_stalled = step.status == TwistStatus::Stalled;
-            (step.step.pose, 0.0, if is_stalled { Status::Stalled } else { Status::Moving })
+            (step.step.pose, [0.0; 2], if is_stalled { Status::Stalled } else { Status::Moving })
         } else {
             let target = match push {
                 Push::Target => at(home.translation + direction * (2.0 * reach)).into(),
@@ -122,7 +127,7 @@ pub(super) fn pushed(
                 }
             };
             let step = servo.step(&q, target).unwrap();
-            (step.pose, step.position_error, step.status)
+            (step.pose, [step.position_error, step.orientation_error], step.status)
         };
         servo.advance(&mut q);
         let is_fixed = matches!(push, Push::Target | Push::TargetAt(_));
@@ -131,6 +136,11 @@ pub(super) fn pushed(
             false => (pose.translation - home.translation).dot(direction) / reach,
         };
         motion.back += if last.is_finite() { (last - way).max(0.0) } else { 0.0 };
+        if is_fixed {
+            let scaled = (error / length).hypot(angle);
+            motion.rise += (scaled - last_error).max(0.0);
+            last_error = scaled;
+        }
         motion.place = pose.translation;
         let speeds = servo.joint_velocities().iter().map(|rate| rate.abs());
         motion.speed = speeds.fold(0.0, f64::max);

@@ -55,6 +55,30 @@ fn a_posture_alone_is_reached() {
     assert_eq!(result.nearest, None);
 }
 
+/// On their ways the position comes on while the orientation that had arrived gives way, so that the sum of
+/// both errors rises for seconds.
+#[test]
+fn a_sum_of_errors_that_rises_is_no_stall() {
+    let from = [-1.76, 0.93, -0.79, -0.98, 2.45, 0.27, 0.87];
+    let iiwa14 = ("iiwa14", from, [-1.94, -0.72, -2.41, -1.76, 1.60, 0.12, -0.79], None);
+    let from = [1.43, 1.27, -2.25, -0.38, 2.09, 0.43, -2.49];
+    let panda = ("panda", from, [2.43, -1.29, 0.34, -2.07, 2.24, 0.33, -1.88], Some(1.05));
+    for (name, from, to, reaches) in [iiwa14, panda] {
+        let robot = catalogue::load(name).unwrap();
+        let mut target = robot.state(&to).unwrap().pose(robot.tool()).unwrap();
+        if let Some(reaches) = reaches {
+            let far = reaches * robot.reach() / target.translation.norm();
+            target.translation = target.translation * far;
+        }
+        let end_effector = robot.tool().into();
+        let objective =
+            TaskObjective::Frame { end_effector, components: Task::POSE, target: target.into() };
+        let mut servo = of_tasks(&robot, vec![MotionTask::new("hand", objective)]);
+        let result = servo.simulate(&from, 20.0, |_, _, _| ()).unwrap();
+        assert_eq!(result.status, Status::Reached, "{name}");
+    }
+}
+
 /// A preference that the pose leaves no room for stalls; the servo has reached its pose.
 #[test]
 fn a_posture_below_a_pose_does_not_hide_it() {

@@ -45,9 +45,12 @@ impl Servo {
     }
 
     /// The share of the desired motion that the linearised task achieves; `None` if nothing is left to
-    /// do, or no configuration can do it.
+    /// do, no configuration can do it, or joints with self-motions head for the nearest pose: on their way
+    /// the task makes little progress too.
     fn progress(&mut self) -> Option<f64> {
-        if self.is_out_of_reach() || self.options.projection != TaskProjection::Orthogonal {
+        let heads_for_the_edge = self.edge_aim.is_some() && self.has_self_motions();
+        let is_whole = self.options.projection == TaskProjection::Orthogonal;
+        if heads_for_the_edge || self.is_out_of_reach() || !is_whole {
             return None;
         }
         self.load_achieved_twist();
@@ -86,7 +89,8 @@ impl Servo {
             way: None,
             gain_of_way: None,
         };
-        let folds = escape.folds_at_limit(task, &mut edge);
+        // At the edge of reach an arm that stretches out is no arm that comes back.
+        let folds = self.edge_aim.is_none() && escape.folds_at_limit(task, &mut edge);
         if !(folds || escape.progress.is_lost) || !escape.solve(task, &mut edge, folds) {
             return false;
         }

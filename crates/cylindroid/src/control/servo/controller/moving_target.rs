@@ -20,8 +20,6 @@ impl Servo {
         let last = self.last_target.replace(target.pose);
         if last != Some(target.pose) {
             self.stall_detector = StallDetector::new();
-            self.position_stall = StallDetector::new();
-            self.squares_stall = StallDetector::new();
         }
         let is_fed_forward = target.feed_forward != Twist::ZERO;
         let moved = is_fed_forward || last.is_some_and(|last| last != target.pose);

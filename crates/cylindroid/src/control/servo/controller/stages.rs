@@ -160,7 +160,7 @@ impl Servo {
         let Some(coupled) = &mut self.coupled else {
             // Arms without self-motions do not swing, and come back to targets less often from this way.
             let nearest = self.nearest_pose.as_ref().filter(|_| self.edge_aim.is_some());
-            let has_self_motions = self.task.rows() < self.task.cols();
+            let has_self_motions = self.has_self_motions();
             let mut edge = Edge {
                 chain: &self.chain,
                 space: &self.space,
@@ -287,6 +287,11 @@ impl Servo {
         self.active.fill(None);
         self.at_limit.clear();
         Some(braking)
+    }
+
+    /// True where the joints can move without the tool.
+    pub(super) fn has_self_motions(&self) -> bool {
+        self.task.rows() < self.task.cols()
     }
 
     /// True where no configuration reaches the target.
