@@ -2,14 +2,13 @@
 //!
 //! Checked  tests/it/ik.rs, tests/it/ik_misses.rs
 
-use std::f64::consts::PI;
-
 use super::avoidance::Avoidance;
 use super::convergence::{Errors, is_admissible, is_reached};
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
 use crate::collision::CollisionModel;
 use crate::error::Result;
+use crate::scalar::nearest_turn;
 
 /// Solutions whose coordinates differ by less than this, up to full turns, are one [rad, lengths].
 const SAME_CONFIGURATION: f64 = 1e-3;
@@ -98,8 +97,8 @@ impl Solver {
         let mut all = self.problem.coordinates.iter().zip(&self.problem.turns);
         all.all(|(&c, turns)| {
             let apart = a[c] - b[c];
-            let turns = if *turns { (apart / (2.0 * PI)).round() } else { 0.0 };
-            (apart - 2.0 * PI * turns).abs() < SAME_CONFIGURATION
+            let apart = if *turns { nearest_turn(apart, 0.0) } else { apart };
+            apart.abs() < SAME_CONFIGURATION
         })
     }
 }

@@ -11,8 +11,6 @@
 //! Source   Yoshikawa 1985; Liegeois 1977 (gradient projection)
 //! Checked  tests/it/ik_criteria.rs
 
-use std::f64::consts::PI;
-
 use super::criterion::Criterion;
 use super::levenberg_marquardt::Problem;
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
@@ -67,13 +65,9 @@ impl Ascent {
 
     /// Full turns of joints that permit them, towards the middle of their range, if limits count.
     pub(super) fn wrap_angles(&self, problem: &Problem, q: &mut [f64]) {
-        if !matches!(self.criterion, Criterion::LimitAvoidance { .. }) {
-            return;
-        }
-        for (i, &c) in problem.coordinates.iter().enumerate() {
-            let middle = 0.5 * (problem.lower[i] + problem.upper[i]);
-            if problem.turns[i] && !problem.fixed[i] && middle.is_finite() {
-                q[c] += 2.0 * PI * ((middle - q[c]) / (2.0 * PI)).round();
+        if matches!(self.criterion, Criterion::LimitAvoidance { .. }) {
+            for (i, &c) in problem.coordinates.iter().enumerate() {
+                q[c] = problem.turned_to_middle(i, q[c]);
             }
         }
     }

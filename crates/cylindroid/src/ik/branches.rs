@@ -17,8 +17,9 @@
 //!          that passes by an axis
 //! Checked  src/ik/nearest.rs (against 1000 random restarts)
 
-use std::f64::consts::TAU;
 use std::ops::Range;
+
+use crate::scalar::nearest_turn;
 
 /// Sampling step of the locked joint [rad].
 pub(super) const STEP: f64 = 0.1;
@@ -267,10 +268,7 @@ fn swing(
     within_limits: &impl Fn([f64; 6]) -> ([f64; 6], f64),
     closest: f64,
 ) -> Option<Place> {
-    let ways: [f64; 6] = std::array::from_fn(|i| {
-        let apart = b.wrapped[i] - a.wrapped[i];
-        apart - TAU * (apart / TAU).round()
-    });
+    let ways: [f64; 6] = std::array::from_fn(|i| nearest_turn(b.wrapped[i] - a.wrapped[i], 0.0));
     if ways.iter().all(|way| way.abs() < SAME_BRANCH) {
         return None;
     }

@@ -23,7 +23,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::{Chain, State};
 use crate::linalg::{Damped, DampedProblem};
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
-use crate::scalar::clamp;
+use crate::scalar::{clamp, nearest_turn};
 use crate::task::HalfSpace;
 
 /// The goals of a mechanism, with workspace.
@@ -116,6 +116,13 @@ impl Problem {
             own.set(goal);
         }
         Ok(())
+    }
+
+    /// The value `x` of coordinate i, wrapped towards the middle of its range if it permits full turns.
+    pub(super) fn turned_to_middle(&self, i: usize, x: f64) -> f64 {
+        let middle = 0.5 * (self.lower[i] + self.upper[i]);
+        let may_turn = self.turns[i] && !self.fixed[i] && middle.is_finite();
+        if may_turn { nearest_turn(x, middle) } else { x }
     }
 
     /// Forward kinematics at `q`; computes the scaled errors.

@@ -6,8 +6,6 @@
 //!          random ones; none of these
 //! Checked  tests/it/ik_misses.rs
 
-use std::f64::consts::PI;
-
 use super::convergence::{Errors, is_reached};
 use super::levenberg_marquardt::Problem;
 use super::reason::MissReason;
@@ -81,7 +79,12 @@ impl Solver {
             |p| (p.lower, p.upper) = (vec![f64::NEG_INFINITY; n], vec![f64::INFINITY; n]),
             |p| (p.lower, p.upper) = limits.clone(),
         )?;
-        self.turn_towards_limits(&mut found);
+        let Problem { coordinates, lower, upper, .. } = &self.problem;
+        for (i, &c) in coordinates.iter().enumerate() {
+            if found[c] < lower[i] || found[c] > upper[i] {
+                found[c] = self.problem.turned_to_middle(i, found[c]);
+            }
+        }
         Some(found)
     }
 
@@ -105,18 +108,6 @@ impl Solver {
             let reached = is_reached(errors, &self.options) && next.iter().all(|x| x.is_finite());
             reached.then_some(next)
         })
-    }
-
-    /// Full turns of joints that permit them, towards the middle of their range.
-    fn turn_towards_limits(&self, q: &mut [f64]) {
-        let p = &self.problem;
-        for (i, &c) in p.coordinates.iter().enumerate() {
-            let outside = q[c] < p.lower[i] || q[c] > p.upper[i];
-            let middle = 0.5 * (p.lower[i] + p.upper[i]);
-            if outside && p.turns[i] && !p.fixed[i] && middle.is_finite() {
-                q[c] += 2.0 * PI * ((middle - q[c]) / (2.0 * PI)).round();
-            }
-        }
     }
 
     /// The reason for a miss that neither distance nor collisions explain; `beyond` reaches the

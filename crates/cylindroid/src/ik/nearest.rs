@@ -16,8 +16,6 @@
 //!          branches rarely
 //! Checked  tests in this file (against 1000 random restarts), tests/it/ik.rs
 
-use std::f64::consts::PI;
-
 use super::branches::{Place, STEP, Sample, Samples, index_of};
 use super::closed_form::ClosedForm;
 use super::convergence::is_reached;
@@ -27,7 +25,7 @@ use super::self_motion::Aim;
 use super::solution::{Candidate, FoundBy};
 use super::solve::Solver;
 use crate::error::Result;
-use crate::scalar::clamp;
+use crate::scalar::{clamp, nearest_turn};
 use crate::spatial::Pose;
 
 /// Gaps between values with different numbers of solutions are halved down to this [rad]: branches
@@ -69,11 +67,9 @@ impl Solver {
         }
         for i in 0..self.problem.coordinates.len() {
             let c = self.problem.coordinates[i];
-            let turns = ((self.preferred[c] - q[c]) / (2.0 * PI)).round();
-            let turned = q[c] + 2.0 * PI * turns;
+            let turned = nearest_turn(q[c], self.preferred[c]);
             let within = (self.problem.lower[i]..=self.problem.upper[i]).contains(&turned);
-            let can = self.problem.turns[i] && !self.problem.fixed[i] && within;
-            if can && turns != 0.0 {
+            if self.problem.turns[i] && !self.problem.fixed[i] && within {
                 q[c] = turned;
             }
         }
@@ -311,6 +307,8 @@ impl Solver {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::super::options::{Budget, IkOptions};
     use super::*;
     use crate::model::{Mechanism, catalogue};

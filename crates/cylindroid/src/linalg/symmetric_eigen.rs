@@ -52,7 +52,7 @@ impl<const N: usize> SymmetricEigen<N> {
                     let apq = a[p][q];
                     let size = a[p][p].abs() + a[q][q].abs();
                     // Below this a rotation changes no digit of the eigenvalues.
-                    if apq.abs() <= 0.25 * f64::EPSILON * size || apq == 0.0 {
+                    if apq.abs() <= 0.25 * f64::EPSILON * size {
                         a[p][q] = 0.0;
                         continue;
                     }

@@ -469,4 +469,12 @@ mod tests {
             assert!(count > 95, "{name}: {count} of 100");
         }
     }
+
+    #[test]
+    fn values_that_cannot_be_told_apart_are_refused() {
+        assert_eq!(measured(&[2.0, 1e-3, 4.0], 2), Some((8.0, 4.0, 16.0)));
+        assert_eq!(measured(&[2.0, 3e-3, 4.0], 2), None);
+        assert_eq!(measured(&[2.0, f64::INFINITY], 2), None);
+        assert_eq!(measured(&[f64::NAN, 2.0], 2), None);
+    }
 }

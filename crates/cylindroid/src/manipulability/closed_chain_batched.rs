@@ -458,4 +458,30 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_task_leaves_the_singular_values_of_the_whole_twist() {
+        for name in ["five-bar", "stewart", "ur5e"] {
+            let mechanism = catalogue::load(name).unwrap();
+            let plan =
+                BatchedConstraintPlan::of(&mechanism, mechanism.reference(), mechanism.reach())
+                    .unwrap();
+            let scale = |scale: &[f64]| Matrix::diagonal(scale);
+            let (object, joint) = (scale(&plan.object_scale), scale(&plan.actuated_scale));
+            let task = Matrix::from_fn(2, plan.object(), |i, j| f64::from(u8::from(i == j)));
+            let of_task = (Some(task), Matrix::identity(2));
+            let of_task = Kernel::new(plan.clone(), of_task, joint.clone()).unwrap();
+            let of_twist = Kernel::new(plan, (None, object), joint).unwrap();
+            let values = |kernel: &Kernel| {
+                let mut numbers = vec![0.0; kernel.width()];
+                kernel.run(mechanism.home(), mechanism.n(), &mut numbers);
+                let mut whole = kernel.read(&numbers).whole.to_vec();
+                whole.sort_by(f64::total_cmp);
+                whole
+            };
+            for (x, y) in values(&of_task).iter().zip(values(&of_twist)) {
+                assert!((x - y).abs() <= 1e-12 * y, "{name}: {x} and {y}");
+            }
+        }
+    }
 }

@@ -13,6 +13,7 @@ mod bracket;
 #[cfg(target_arch = "x86_64")]
 mod cpu;
 mod fnv1a;
+mod nearest_turn;
 mod plain;
 mod power_of_two;
 mod simd;
@@ -28,6 +29,7 @@ pub(crate) use bracket::Bracket;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use cpu::{Avx2, Avx512};
 pub(crate) use fnv1a::fnv1a;
+pub(crate) use nearest_turn::nearest_turn;
 pub(crate) use power_of_two::power_of_two;
 pub(crate) use simd::{MAX_LANES, Simd, Simd4, SimdFloat};
 pub(crate) use splitmix64::uniform;

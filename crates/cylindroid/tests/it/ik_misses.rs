@@ -128,6 +128,45 @@ fn every_miss_has_its_reason() {
     assert_eq!(reason, MissReason::OutOfReach { distance: 1.0, length: 0.0 });
 }
 
+/// The closest configuration is near a limit of the shoulder. Without limits it goes on through this one,
+/// to an angle that is within them a full turn away: the elbow alone is too narrow.
+#[test]
+fn limits_that_a_full_turn_keeps_are_not_named() {
+    for (lower, upper, start, target) in [
+        (-3.1, 3.1, 3.0, [3.25, -0.5]),
+        (-3.1, 3.1, -3.0, [-3.25, 0.5]),
+        (0.1, 6.2, 0.2, [-0.15, 0.5]),
+        (6.4, 12.5, 12.4, [12.7, -0.5]),
+    ] {
+        let robot = from_text(&format!(
+            r#"
+            name = "arm"
+            dimension = 2
+            tool = "hand"
+            [[joint]]
+            name = "shoulder"
+            type = "revolute"
+            between = ["ground", "upper"]
+            origin = [0.0, 0.0]
+            limits = {{ lower = {lower}, upper = {upper} }}
+            [[joint]]
+            name = "elbow"
+            type = "revolute"
+            between = ["upper", "hand"]
+            origin = [1.0, 0.0]
+            limits = {{ lower = -0.1, upper = 0.1 }}
+            "#
+        ));
+        let free = unlimited(&robot);
+        let state = free.state(&target).unwrap();
+        let goals = [Goal::pose(robot.tool(), state.pose(free.tool()).unwrap())];
+        let options = IkOptions { initial_guess: Some(vec![start, 0.0]), ..IkOptions::default() };
+        let found = solve(&robot, &goals, &options).unwrap();
+        let elbow = MissReason::Limits { joints: vec!["elbow".to_owned()] };
+        assert_eq!(found.reason, Some(elbow), "{start}");
+    }
+}
+
 /// The reason "limits" is true: without limits of the named joints the target is reached. Here
 /// most targets are beyond the limits, which are two fifths of those of a panda.
 #[test]

@@ -42,8 +42,9 @@ const TURN: f64 = 0.99;
 const SELF_MOTION: f64 = 0.05;
 /// Square of the distance to a segment over the square of its length, up to which a point lies on it [-].
 const ON_SEGMENT: f64 = 0.01;
-/// Halvings that find the end of a curve at the boundary of its domain.
-const HALVINGS: usize = 60;
+/// Halvings that find the end of a curve at the boundary of its domain: from the longest step to the
+/// shortest.
+const HALVINGS: usize = 27;
 
 /// What vanishes on a curve.
 #[derive(Debug, Clone)]
@@ -196,11 +197,9 @@ impl CurveTracer {
         let change: Vec<f64> = motion.iter().map(|x| SELF_MOTION * x).collect();
         let guess = moved(self.equations.mechanism(), &at.q, &self.unknown, &change);
         let Some(other) = self.corrected(guess.clone(), false)? else { return Ok(false) };
-        let rests = |&(i, ..): &(usize, f64, f64)| {
-            (other.q[i] - at.q[i]).abs() <= LOCUS_AT_REST * self.unit(i)
-        };
-        Ok(self.apart(&other.q, &guess) <= 0.2 * SELF_MOTION
-            && self.domain.bounds.iter().all(rests))
+        let bounded: Vec<usize> = self.domain.bounds.iter().map(|&(i, ..)| i).collect();
+        Ok(self.apart(&self.unknown, &other.q, &guess) <= 0.2 * SELF_MOTION
+            && self.apart(&bounded, &other.q, &at.q) <= LOCUS_AT_REST)
     }
 
     /// The singular vector of the vanishing value at a configuration, of all coordinates and scaled;
@@ -290,9 +289,6 @@ impl CurveTracer {
         let mut last = here.q.clone();
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
-            if outside - inside < STEPS.0 {
-                break;
-            }
             match self.stepped(here, tangent, middle)? {
                 Some((point, _)) if self.contains(&point.q)? => {
                     inside = middle;
@@ -316,7 +312,7 @@ impl CurveTracer {
         let Some(point) = self.corrected(guess.clone(), here.motion.is_some())? else {
             return Ok(None);
         };
-        let apart = self.apart(&point.q, &guess);
+        let apart = self.apart(&self.unknown, &point.q, &guess);
         let next = self.tangent(&point, tangent);
         let turned: f64 = next.iter().zip(tangent).map(|(a, b)| a * b).sum();
         // Rotation vectors may come back as equivalent ones.
@@ -324,10 +320,10 @@ impl CurveTracer {
         Ok((near && turned >= TURN).then_some((point, next)))
     }
 
-    /// The distance of two configurations over the unknown.
-    fn apart(&self, a: &[f64], b: &[f64]) -> f64 {
+    /// The distance of two configurations over some coordinates.
+    fn apart(&self, some: &[usize], a: &[f64], b: &[f64]) -> f64 {
         let square = |&i: &usize| ((a[i] - b[i]) / self.unit(i)).powi(2);
-        self.unknown.iter().map(square).sum::<f64>().sqrt()
+        some.iter().map(square).sum::<f64>().sqrt()
     }
 
     /// The longest step: a share of the box along each of its axes.

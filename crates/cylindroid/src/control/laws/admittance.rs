@@ -9,6 +9,8 @@
 //! Source   Hogan 1985 (impedance and admittance)
 //! Checked  tests/it/servo/hybrid.rs::admittance_*
 
+use std::array::from_fn;
+
 use crate::error::{Error, Result};
 use crate::linalg::SymmetricEigen;
 use crate::spatial::{Pose, Twist, Vec3, Wrench};
@@ -90,15 +92,12 @@ impl Admittance {
     pub fn from_rows(rows: [[f64; 6]; 6]) -> Result<Self> {
         Error::check_finite("admittance", rows.as_flattened())?;
         let root = |i: usize| rows[i][i].max(0.0).sqrt();
-        let mut scaled = [[0.0; 6]; 6];
-        for (i, row) in scaled.iter_mut().enumerate() {
-            for (j, s) in row.iter_mut().enumerate() {
-                let symmetric = 0.5 * rows[i][j] + 0.5 * rows[j][i];
-                let size = root(i) * root(j);
-                // For a zero diagonal entry, the row and column must be zero to be semidefinite.
-                *s = if symmetric == 0.0 { 0.0 } else { symmetric / size };
-            }
-        }
+        let entry = |i: usize, j: usize| {
+            let symmetric = 0.5 * rows[i][j] + 0.5 * rows[j][i];
+            // For a zero diagonal entry, the row and column must be zero to be semidefinite.
+            if symmetric == 0.0 { 0.0 } else { symmetric / (root(i) * root(j)) }
+        };
+        let scaled: [[f64; 6]; 6] = from_fn(|i| from_fn(|j| entry(i, j)));
         let smallest = if scaled.as_flattened().iter().all(|s| s.is_finite()) {
             SymmetricEigen::of(scaled, 6).values[5]
         } else {

@@ -123,7 +123,7 @@ impl CartesianPath {
         }
         // Scaled by the longest side, so that nothing overflows or vanishes.
         let size = a.norm().max(b.norm()).max((b - a).norm());
-        let scale = if size > 0.0 { 1.0 / size } else { 0.0 };
+        let scale = 1.0 / size.max(f64::MIN_POSITIVE);
         let (u, v) = (a * scale, b * scale);
         let normal = u.cross(v);
         let Some(n) = normal.unit(COLLINEAR) else {

@@ -24,6 +24,13 @@ pub struct ServoGains {
     pub orientation: f64,
 }
 
+impl ServoGains {
+    /// The smaller one [1/s].
+    pub(super) fn least(&self) -> f64 {
+        self.position.min(self.orientation)
+    }
+}
+
 /// Errors below which a target counts as reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseTolerance {

@@ -67,12 +67,12 @@ pub struct TwistStep {
 }
 
 /// The last command and the progress along it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct TwistFollower {
     command: Twist,
     /// Time since the command (s).
     age: f64,
-    /// The desired twist of the last step, scaled.
+    /// The desired twist of the last step, scaled; zero before the first.
     last: Vec<f64>,
     mean_share: f64,
     /// True if the last step was one of velocity mode, and did not follow its twist.
@@ -82,12 +82,11 @@ pub(super) struct TwistFollower {
 impl TwistFollower {
     /// For tasks of m components.
     pub(super) fn new(m: usize) -> Self {
-        let last = vec![0.0; m];
-        Self { command: Twist::ZERO, age: 0.0, last, mean_share: 1.0, is_stalled: false }
+        Self { last: vec![0.0; m], ..Self::default() }
     }
 
     pub(super) fn reset(&mut self) {
-        (self.command, self.age, self.mean_share) = (Twist::ZERO, 0.0, 1.0);
+        (self.command, self.age) = (Twist::ZERO, 0.0);
         self.last.fill(0.0);
     }
 

@@ -19,7 +19,7 @@ mod pieper;
 mod solutions;
 mod subproblems;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::fmt;
 
 use self::geometry::{ArmParameters, Three};
@@ -30,7 +30,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
 use crate::linalg::{Damped, DampedProblem, Matrix};
 use crate::model::Mechanism;
-use crate::scalar::{clamp, uniform};
+use crate::scalar::{clamp, nearest_turn, uniform};
 use crate::spatial::{Pose, Rotation, Twist};
 use crate::tolerance::{ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED};
 
@@ -361,19 +361,20 @@ impl Analytic {
         }
         let mut errors = self.errors(&mut q, target);
         for _ in 0..STEPS {
-            if self.are_below(errors, ANALYTIC_REFINED) || !self.are_below(errors, 1.0) {
+            let size = self.larger(errors);
+            if size <= ANALYTIC_REFINED || size > 1.0 {
                 break;
             }
             let before = (q, errors);
             self.refine(&mut q, &free, target);
             errors = self.errors(&mut q, target);
-            if errors.0 / self.reach + errors.1 >= before.1.0 / self.reach + before.1.1 {
+            if self.larger(errors) >= size {
                 (q, errors) = before;
                 break;
             }
         }
         let (position_error, orientation_error) = errors;
-        self.are_below(errors, ANALYTIC_CONFIRMED).then_some(AnalyticSolution {
+        (self.larger(errors) <= ANALYTIC_CONFIRMED).then_some(AnalyticSolution {
             q,
             free,
             position_error,
@@ -381,8 +382,9 @@ impl Analytic {
         })
     }
 
-    fn are_below(&self, (position, orientation): (f64, f64), most: f64) -> bool {
-        position <= most * self.reach && orientation <= most
+    /// The larger of the errors (rad, characteristic lengths).
+    fn larger(&self, (position, orientation): (f64, f64)) -> f64 {
+        (position / self.reach).max(orientation)
     }
 
     /// Errors of a configuration, which is clamped to the limits (m, rad).
@@ -420,12 +422,6 @@ impl Analytic {
             q.iter_mut().zip(d).for_each(|(q, d)| *q += d);
         }
     }
-}
-
-/// The angle wrapped by full turns to the value closest to `near`.
-fn nearest_turn(angle: f64, near: f64) -> f64 {
-    let apart = near - angle;
-    if apart.abs() <= PI { angle } else { angle + TAU * (apart / TAU).round() }
 }
 
 /// The angle wrapped by full turns to the value closest to `near` within the limits; clamped if it

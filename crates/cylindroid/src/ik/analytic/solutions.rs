@@ -4,9 +4,9 @@
 //! Valid    at most eight; equal ones, up to full turns, are one
 //! Checked  tests/it/analytic/
 
-use std::f64::consts::{PI, TAU};
 use std::ops::Deref;
 
+use crate::scalar::nearest_turn;
 use crate::tolerance::ANALYTIC_SAME;
 
 /// One solution.
@@ -66,11 +66,8 @@ impl AnalyticSolutions {
     /// Adds a new solution, up to full turns; of two equal ones the more accurate.
     pub(super) fn insert(&mut self, solution: AnalyticSolution) {
         let same = |other: &AnalyticSolution| {
-            other.q.iter().zip(solution.q).all(|(a, b)| {
-                let apart = (a - b).abs();
-                let turned = |apart: f64| (apart - TAU * (apart / TAU).round()).abs();
-                apart < ANALYTIC_SAME || (apart > PI && turned(apart) < ANALYTIC_SAME)
-            })
+            let mut pairs = other.q.iter().zip(solution.q);
+            pairs.all(|(a, b)| nearest_turn(a - b, 0.0).abs() < ANALYTIC_SAME)
         };
         let error = |p: &AnalyticSolution| p.position_error + p.orientation_error;
         if let Some(other) = self.list[..self.len].iter_mut().find(|other| same(other)) {

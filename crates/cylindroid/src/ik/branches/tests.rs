@@ -1,5 +1,7 @@
 //! Samples and places of self-motions: folds, dips, segments, swings and bounds.
 
+use std::f64::consts::TAU;
+
 use super::*;
 use crate::scalar::uniform;
 

@@ -6,7 +6,7 @@ use cylindroid::closure::{
 };
 use cylindroid::manipulability::{BatchOptions, Manipulability, ManipulabilityBatch, Metrics};
 use cylindroid::model::{CoordinateKind, JointKind, JointSpec, LoopJointSpec, Mimic};
-use cylindroid::spatial::Vec3;
+use cylindroid::spatial::{Pose, Rotation, Vec3};
 use cylindroid::{Error, Matrix, Mechanism, catalogue};
 
 use crate::support::Random;
@@ -268,6 +268,43 @@ fn agrees_for_closing_joints_of_all_kinds() {
         let q: Vec<f64> = (0..13).flat_map(|_| random.q(&mechanism)).collect();
         compare(&format!("{kind:?}"), &mechanism, &BatchOptions::default(), &q);
     }
+}
+
+/// What a universal joint constrains is undetermined to rounding over the sine of its axes.
+#[test]
+fn agrees_where_the_axes_of_a_closing_joint_line_up() {
+    let (first, second) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 1.0, 0.0));
+    let mut random = Random(51);
+    let mut b = Mechanism::builder("ring");
+    for (name, kind, [from, to]) in [
+        ("crank", JointKind::Revolute, ["ground", "arm"]),
+        ("ball", JointKind::Spherical, ["ground", "cylinder"]),
+        ("slide", JointKind::Prismatic, ["cylinder", "rod"]),
+    ] {
+        b.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(random.vec3(1.0)),
+            axis: if name == "slide" { Vec3::X } else { Vec3::Z },
+            actuated: name == "crank",
+            ..JointSpec::new(name, kind, from, to)
+        });
+    }
+    b.loop_joint(LoopJointSpec {
+        link_a_from_joint: Pose::from_translation(random.vec3(1.0)),
+        link_b_from_joint: Pose::from_translation(random.vec3(1.0)),
+        axis: first,
+        ..LoopJointSpec::new("end", JointKind::Universal { second }, "arm", "rod")
+    });
+    b.reference("rod");
+    let mechanism = b.build().unwrap();
+    let goal = Rotation::exp(Vec3::Z * 0.4) * first;
+    let across = second.cross(goal);
+    let angle = across.norm().atan2(second.dot(goal));
+    let mut q = Vec::new();
+    for apart in [0.0, 1e-10, 1e-8, 5e-7, 0.2] {
+        let turn = across * ((angle - apart) / across.norm());
+        q.extend([0.4, turn.x, turn.y, turn.z, 0.3]);
+    }
+    compare("axes", &mechanism, &BatchOptions::default(), &q);
 }
 
 #[test]

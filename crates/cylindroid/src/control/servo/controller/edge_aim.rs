@@ -49,7 +49,7 @@ impl Servo {
         if is_coupled && self.loop_edge.is_none() {
             return;
         }
-        let gain = self.options.gain.position.min(self.options.gain.orientation);
+        let gain = self.options.gain.least();
         let is_fed_forward = norm(&self.x) > FED_FORWARD * gain * norm(&self.projected_error);
         let is_weak = self.size_of_rates() > AMPLIFIED * norm(&self.x);
         let is_near = is_weak || self.kept.iter().any(|kept| !kept);

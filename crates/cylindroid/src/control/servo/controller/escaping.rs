@@ -54,7 +54,7 @@ impl Servo {
             return None;
         }
         self.load_achieved_twist();
-        let gain = self.options.gain.position.min(self.options.gain.orientation);
+        let gain = self.options.gain.least();
         let escape = self.escape.as_mut()?;
         if norm(&self.x) > FED_FORWARD * gain * norm(&self.projected_error) {
             escape.error.iter_mut().zip(&self.x).for_each(|(e, x)| *e = x / gain);
@@ -76,7 +76,7 @@ impl Servo {
             svd: &self.svd,
             bounds: &self.bounds,
             last: &self.last,
-            gain: self.options.gain.position.min(self.options.gain.orientation),
+            gain: self.options.gain.least(),
             method: self.method,
             size: norm(&self.x),
         };

@@ -139,7 +139,7 @@ impl Servo {
         for i in 0..self.last.len() {
             self.last[i] = self.space.scaled_rate(i, self.rates[self.place(i)]);
         }
-        let gain = self.options.gain.position.min(self.options.gain.orientation);
+        let gain = self.options.gain.least();
         let (gain, error) = match self.edge_aim {
             Some(aim) => (aim.gain, &self.edge_error),
             _ => (gain, &self.projected_error),
