@@ -277,3 +277,15 @@ impl ServoOptions {
         self.method.check()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::ServoGains;
+
+    #[test]
+    fn the_smaller_gain_is_the_least() {
+        for (position, orientation) in [(2.0, 3.0), (3.0, 2.0)] {
+            assert_eq!(ServoGains { position, orientation }.least(), 2.0);
+        }
+    }
+}

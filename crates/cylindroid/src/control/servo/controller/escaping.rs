@@ -12,6 +12,9 @@ use crate::control::solver::saturation::{FED_FORWARD, Saturation};
 use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
 
+/// Velocities of all joints below this are those of rest [rad/s, or characteristic lengths per s].
+const AT_REST: f64 = 1e-3;
+
 impl Servo {
     /// Bounds, computes and stores the joint velocities; where nothing is commanded, all joints brake.
     pub(super) fn store_limited_rates(
@@ -45,12 +48,14 @@ impl Servo {
     }
 
     /// The share of the desired motion that the linearised task achieves; `None` if nothing is left to
-    /// do, no configuration can do it, or joints with self-motions head for the nearest pose: on their way
-    /// the task makes little progress too.
+    /// do, no configuration can do it, or joints head for the nearest pose: on their way the task makes
+    /// little progress too. Those without self-motions may rest before it, at a saddle of the error.
     fn progress(&mut self) -> Option<f64> {
-        let heads_for_the_edge = self.edge_aim.is_some() && self.has_self_motions();
+        let escapes = self.escape.as_ref().is_some_and(|escape| escape.progress.is_lost);
+        let rests = norm(&self.last) < AT_REST;
+        let may_be_lost = !self.has_self_motions() && (rests || escapes);
         let is_whole = self.options.projection == TaskProjection::Orthogonal;
-        if heads_for_the_edge || self.is_out_of_reach() || !is_whole {
+        if self.edge_aim.is_some() && !may_be_lost || self.is_out_of_reach() || !is_whole {
             return None;
         }
         self.load_achieved_twist();
