@@ -12,7 +12,7 @@ use crate::control::solver::saturation::{FED_FORWARD, Saturation};
 use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
 
-/// Velocities of all joints below this are those of rest [rad/s, or characteristic lengths per s].
+/// Velocities of all joints below this are those of rest (scaled) [1/s].
 const AT_REST: f64 = 1e-3;
 
 impl Servo {
