@@ -1,7 +1,7 @@
 //! The velocities of a step in which joints may meet limits: those of the linearised task within its
 //! bounds, or of an escape where it makes no progress.
 //!
-//! Checked  tests/it/servo/limits.rs, tests/it/servo/escape.rs
+//! Checked  tests/it/servo/limits.rs, tests/it/servo/escape.rs, tests/it/servo/just_beyond.rs
 
 use super::super::edge::Edge;
 use super::super::escape::Linearised;
@@ -94,7 +94,7 @@ impl Servo {
             way: None,
             gain_of_way: None,
         };
-        // At the edge of reach an arm that stretches out is no arm that comes back.
+        // Joints that brake for the nearest pose stretch the arm; nothing leads it back inside.
         let folds = self.edge_aim.is_none() && escape.folds_at_limit(task, &mut edge);
         if !(folds || escape.progress.is_lost) || !escape.solve(task, &mut edge, folds) {
             return false;
