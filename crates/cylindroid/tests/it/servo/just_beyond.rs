@@ -1,6 +1,8 @@
 //! Targets just beyond reach, and those that leave it: nearer than the length of the stretched arm, so that
 //! no length proves them out of reach.
 
+use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions};
+
 use super::closed_edges::{Push, ToTheEdge, pushed, weakened};
 use super::*;
 
@@ -160,6 +162,19 @@ impl Counts {
     /// Of the arm at several accelerations, in every direction, by these servos; 12 s for fixed targets and
     /// 40 s for targets that move away.
     fn of(name: &str, task: Task, moves: bool, servo: impl Fn(&Mechanism) -> Servo) -> Self {
+        Self::of_motions(name, task, moves, |robot, push, direction| {
+            let motion = pushed((&mut servo(robot), robot.home()), push, direction, 40.0);
+            [motion.time, motion.back, motion.rise]
+        })
+    }
+
+    /// The same of motions of any servo: their times (s), the ways back, the rises of the error.
+    fn of_motions(
+        name: &str,
+        task: Task,
+        moves: bool,
+        motion: impl Fn(&Mechanism, Push, Vec3) -> [f64; 3],
+    ) -> Self {
         let mut counts = Self::default();
         for direction in DIRECTIONS {
             let all: Vec<Push> = if moves {
@@ -170,15 +185,14 @@ impl Counts {
             for acceleration in [f64::INFINITY, 10.0, 5.0, 1.0, 0.5] {
                 let robot = arm(name, acceleration);
                 for push in &all {
-                    let start = (&mut servo(&robot), robot.home());
-                    let motion = pushed(start, *push, direction, 40.0);
+                    let [time, back, rise] = motion(&robot, *push, direction);
                     counts.motions += 1;
-                    counts.swinging += usize::from(motion.back > 1e-3);
-                    counts.rising += usize::from(motion.rise > 1e-3);
-                    counts.late += usize::from(motion.time > if moves { 40.0 } else { 12.0 });
-                    counts.back = counts.back.max(motion.back);
-                    counts.rise = counts.rise.max(motion.rise);
-                    counts.time = counts.time.max(motion.time);
+                    counts.swinging += usize::from(back > 1e-3);
+                    counts.rising += usize::from(rise > 1e-3);
+                    counts.late += usize::from(time > if moves { 40.0 } else { 12.0 });
+                    counts.back = counts.back.max(back);
+                    counts.rise = counts.rise.max(rise);
+                    counts.time = counts.time.max(time);
                 }
             }
         }
@@ -218,6 +232,72 @@ fn table_of_inverses_at_the_edge() {
             let of = |robot: &Mechanism| servo(robot, |o| (o.dt, o.method) = (1e-2, method));
             let counts = Counts::of(name, Task::POSE, moves, of);
             counts.print(&format!("{:22} {name:8} {what}", method.name()));
+        }
+    }
+}
+
+/// A servo of many tasks whose only one is the pose of the tool, towards a place from home: time until its
+/// verdict for good (s), the way back over the reach, and the rise of the scaled error.
+fn by_tasks(robot: &Mechanism, task: Task, push: Push, direction: Vec3, keep: bool) -> [f64; 3] {
+    let (dt, tool) = (1e-2, robot.tool());
+    let home = robot.state(robot.home()).unwrap().pose(tool).unwrap();
+    let reach = robot.reach();
+    let objective = |place| TaskObjective::Frame {
+        end_effector: tool.into(),
+        components: task,
+        target: Pose { translation: place, ..home }.into(),
+    };
+    let tasks = vec![MotionTask::new("hand", objective(home.translation))];
+    let options = TaskServoOptions { dt, keep_directions: keep, ..TaskServoOptions::new(robot) };
+    let length = options.length;
+    let mut servo = TaskServo::new(robot, tasks, options).unwrap();
+    let mut q = robot.home().to_vec();
+    let (mut verdict, mut back, mut rise) = (f64::INFINITY, 0.0, 0.0);
+    let (mut farthest, mut least) = (f64::NEG_INFINITY, f64::INFINITY);
+    for i in 0..(40.0 / dt) as usize {
+        let time = i as f64 * dt;
+        let place = match push {
+            Push::TargetAt(place) => place,
+            _ => home.translation + direction * (0.1 * reach * time),
+        };
+        *servo.objective_mut("hand").unwrap() = objective(place);
+        let status = servo.step(&q).unwrap();
+        let at = robot.state(&q).unwrap().pose(tool).unwrap().translation;
+        let report = &servo.reports()[0];
+        let (error, angle) = (report.position_error, report.orientation_error);
+        let way = match push {
+            Push::TargetAt(_) => -error / reach,
+            _ => (at - home.translation).dot(direction) / reach,
+        };
+        (farthest, back) = (farthest.max(way), f64::max(back, farthest - way));
+        if matches!(push, Push::TargetAt(_)) {
+            let scaled = (error / length).hypot(angle);
+            (least, rise) = (least.min(scaled), f64::max(rise, scaled - least));
+        }
+        servo.advance(&mut q);
+        match status {
+            Status::Moving => verdict = f64::INFINITY,
+            _ if verdict.is_infinite() => verdict = time,
+            _ if time > verdict + 1.0 => break,
+            _ => {}
+        }
+    }
+    [verdict, back, rise]
+}
+
+/// Servos of many tasks, with steps of 10 ms.
+#[test]
+#[ignore = "a table of minutes in a release build"]
+fn table_of_tasks_at_the_edge() {
+    for keep in [true, false] {
+        for (name, (kind, task)) in ARMS.iter().flat_map(|name| TASKS.map(|task| (name, task))) {
+            for (what, moves) in [("just beyond", false), ("moving away", true)] {
+                let counts = Counts::of_motions(name, task, moves, |robot, push, direction| {
+                    by_tasks(robot, task, push, direction, keep)
+                });
+                let kept = if keep { "directions kept" } else { "least squares" };
+                counts.print(&format!("{name:8} {kind:8} {what}, {kept}"));
+            }
         }
     }
 }
