@@ -39,10 +39,10 @@ pub(super) use jerk_limited_stop::JerkLimitedStop;
 pub(super) use limits::{DefaultLimits, acceleration_of, limits_of_servo};
 pub(super) use loop_motions::{LoopMotions, nothing_actuated};
 pub(super) use plant::{Predictor, SimulatedRobot};
-pub(super) use saddle::{Progress, Saddle, Surroundings};
+pub(super) use saddle::{AT_REST, Progress, Saddle, Surroundings};
 pub(super) use secondary::{SecondaryVelocities, add_posture};
 pub(super) use stall::{BrakingState, Remainder, StallDetector};
-pub(super) use stopping::jerk_limited_stopping_velocity;
+pub(super) use stopping::{jerk_limited_stopping_velocity, stopping_time};
 pub(super) use task_space::{TaskScaling, TaskSpace, is_locked};
 
 pub use controller::Servo;

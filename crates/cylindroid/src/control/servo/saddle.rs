@@ -47,6 +47,9 @@ const NO_ROOM: f64 = 0.01;
 /// Joints slower than this share of the fastest one take no part in a motion [-].
 const SHARE: f64 = 0.1;
 
+/// Velocities of all joints below this are those of rest (scaled) [1/s].
+pub(in crate::control) const AT_REST: f64 = 1e-3;
+
 /// Velocity up to which a joint is at rest at its limit (scaled) [1/s].
 const BLOCKED: f64 = 1e-3;
 

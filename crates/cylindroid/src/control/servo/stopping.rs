@@ -12,7 +12,7 @@ use crate::scalar::clamp;
 
 /// The time in which a joint stops from this speed, with the ramps of its jerk limit (s).
 #[inline]
-pub(super) fn stopping_time(speed: f64, limits: &Limits) -> f64 {
+pub(in crate::control) fn stopping_time(speed: f64, limits: &Limits) -> f64 {
     if speed == 0.0 {
         return 0.0;
     }

@@ -10,8 +10,7 @@ use super::escape::{Achieved, Escape, Phase};
 use super::levels::USUAL_GAIN;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
-use crate::control::servo::{BrakingState, Surroundings};
-use crate::control::solver::active_set::Precision;
+use crate::control::servo::{AT_REST, Surroundings};
 use crate::control::solver::bounds::VelocityBounds;
 use crate::error::Result;
 use crate::linalg::{dot, norm};
@@ -45,7 +44,9 @@ impl TaskServo {
         };
         match escape.phase {
             _ if !escape.progress.is_lost => escape.phase = Phase::Watching,
-            Phase::Watching => escape.phase = Phase::Probing(0),
+            // Joints that come to rest make no progress either.
+            Phase::Watching if norm(&self.last) < AT_REST => escape.phase = Phase::Probing(0),
+            Phase::Watching => {}
             Phase::Resting(then) if error < (1.0 - FALLEN) * then => escape.reset(),
             Phase::Resting(_) => {}
             Phase::Probing(column) => {
@@ -68,10 +69,16 @@ impl TaskServo {
         Ok(achieved)
     }
 
-    /// Records the progress of a step.
-    pub(super) fn record_progress(&mut self, achieved: Option<Achieved>, braking: BrakingState) {
+    /// True on the way out.
+    pub(super) fn leaves(&self) -> bool {
+        let phase = self.escape.as_ref().map(|escape| escape.phase);
+        matches!(phase, Some(Phase::Leaving { .. }))
+    }
+
+    /// Records the progress of a step, unless joints accelerate or brake in it.
+    pub(super) fn record_progress(&mut self, achieved: Option<Achieved>, is_on_the_way: bool) {
         if let (Some(escape), Some(Achieved { share, .. })) = (&mut self.escape, achieved)
-            && !braking.accelerating
+            && !is_on_the_way
         {
             escape.progress.record(share, self.options.dt);
         }
@@ -212,13 +219,10 @@ impl TaskServo {
 
     /// The velocities of the way out within all inequalities.
     fn solve_escape(&mut self) {
-        if !self.start() {
-            self.last.fill(0.0);
-            return;
+        if let Some(escape) = &self.escape {
+            self.aim.copy_from_slice(&escape.saddle.rates);
         }
-        let Some(escape) = &self.escape else { return };
-        self.set.approach(&escape.saddle.rates, Precision::STRAIGHT);
-        self.last.copy_from_slice(self.set.point());
+        self.solve_aim();
         for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
             member.scale = 0.0;
         }

@@ -4,7 +4,7 @@
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
 //! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
 //! (the levels, solved with `solver/hierarchy.rs`), `linear_range` (how far they go), `braking` (what must stay possible after a step),
-//! `escape` and `escaping` (from configurations in which they are lost), `velocity_mode` (twists in
+//! `turning_back` (joints that stop in time), `escape` and `escaping` (from configurations in which they are lost), `velocity_mode` (twists in
 //! place of targets) and `simulation`.
 
 mod braking;
@@ -23,6 +23,7 @@ mod rows;
 mod simulation;
 mod stack;
 mod task_servo;
+mod turning_back;
 mod twist_command;
 mod velocity_mode;
 

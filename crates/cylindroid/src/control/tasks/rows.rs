@@ -19,24 +19,34 @@ const BRAKING: f64 = 0.5;
 /// Distances outside below this share of the reach come from roundings [-].
 const ROUNDING: f64 = 1e-6;
 
+/// What limits of the jerk permit in a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum JerkBounds<'a> {
+    /// Any velocity within the limits of positions and speeds.
+    None,
+    /// Every velocity from which the limits can be kept.
+    All,
+    /// Those on the way to these velocities of the joints, at which the accelerations end.
+    Towards(&'a [f64]),
+}
+
 impl TaskServo {
     /// Solves for the joint velocities by `solve`. With limits of the jerk twice: for those that the tasks ask for,
     /// then for those of this step on the way to them.
     pub(super) fn solve_within_limits(&mut self, solve: fn(&mut Self)) {
         if let Some(mut desired) = self.desired_rates.take() {
-            self.load_bounds(None);
+            self.load_bounds(JerkBounds::None);
             solve(self);
             desired.copy_from_slice(&self.rates);
             self.motions.velocities(&self.last, &self.bounds, &mut desired);
-            self.load_bounds(Some(&desired));
+            self.load_bounds(JerkBounds::Towards(&desired));
             self.desired_rates = Some(desired);
         }
         solve(self);
     }
 
-    /// Limits of the joints, and the unknowns of the last velocities; where joints have limits of the
-    /// jerk, on the way to the `desired` velocities, or of positions and speeds alone.
-    pub(super) fn load_bounds(&mut self, desired: Option<&[f64]>) {
+    /// Limits of the joints, and the unknowns of the last velocities.
+    pub(super) fn load_bounds(&mut self, jerks: JerkBounds<'_>) {
         let are_units = self.motions.limit_rows() == 0;
         for (i, limits) in self.limits.iter().enumerate() {
             let position = self.state.q().get(i).copied().unwrap_or(0.0);
@@ -44,17 +54,17 @@ impl TaskServo {
             let now = JointState { position, velocity, acceleration };
             let has_jerk = limits.jerk < f64::INFINITY && self.motions.is_actuated(i);
             let dt = self.options.dt;
-            let bound = match desired {
-                _ if !has_jerk => self.motions.bounds(i, limits, now, dt),
-                None => {
+            let bound = match jerks {
+                JerkBounds::None if has_jerk => {
                     let (acceleration, jerk) = (f64::INFINITY, f64::INFINITY);
                     let wide = Limits { acceleration, jerk, ..*limits };
                     self.motions.bounds(i, &wide, now, dt)
                 }
-                Some(desired) => {
+                JerkBounds::Towards(desired) if has_jerk => {
                     let bound = self.motions.bounds(i, limits, now, dt);
                     bound.towards(desired[i], limits, now, dt)
                 }
+                _ => self.motions.bounds(i, limits, now, dt),
             };
             self.bounds[i] = bound;
             let inequalities = &mut self.set.inequalities;

@@ -25,6 +25,8 @@ use super::levels::{Stack, TaskRows};
 use super::motions::Motions;
 use super::objective::{Rows, Scratch, TaskObjective};
 use super::options::{MOST_PAIRS, MotionTask, StoppedBy, TaskReport, TaskServoOptions, check};
+use super::rows::JerkBounds;
+use super::turning_back::TurningBack;
 use super::twist_command::TwistCommand;
 use crate::collision::{CollisionModel, NearPair};
 use crate::control::servo::{
@@ -130,6 +132,10 @@ pub struct TaskServo {
     pub(super) lowest_velocities: Vec<f64>,
     /// From configurations in which the first level is lost, where it can.
     pub(super) escape: Option<Box<Escape>>,
+    /// Of joints with acceleration limits.
+    pub(super) turning_back: Option<Box<TurningBack>>,
+    /// Unknowns that `solve_aim` approaches.
+    pub(super) aim: Vec<f64>,
     reports: Vec<TaskReport>,
     detectors: Vec<StallDetector>,
     last_targets: Vec<Vec<f64>>,
@@ -187,6 +193,7 @@ impl TaskServo {
             rows,
             set: ActiveSet::new(u, inequalities),
             gradients: tasks.iter().map(|t| t.objective.gradient(mechanism, length)).collect(),
+            turning_back: TurningBack::new(mechanism, &motions, &limits, &tasks).map(Box::new),
             limits,
             bounds: vec![VelocityBounds::NONE; v],
             near: Vec::with_capacity(capacity + MOST_PAIRS),
@@ -207,6 +214,7 @@ impl TaskServo {
             braking: BrakingPath::new(mechanism, &motions, capacity)?,
             lowest_velocities: vec![0.0; n],
             escape: Escape::new(mechanism, &motions, &tasks, &stacks).map(Box::new),
+            aim: vec![0.0; u],
             reports: vec![report; tasks.len()],
             detectors: vec![StallDetector::new(); tasks.len()],
             last_targets,
@@ -346,14 +354,15 @@ impl TaskServo {
             }
         }
         self.motions.load(&self.rows, self.options.length, self.options.dt)?;
-        self.load_bounds(None);
+        self.load_bounds(JerkBounds::None);
         self.load_distances()?;
         self.load_desired();
         self.solve_within_limits(Self::solve);
         let achieved = self.escape()?;
+        let slows = !self.leaves() && self.brake_in_time()?;
         Error::check_finite("joint velocities", &self.last)?;
         let braking = self.store()?;
-        self.record_progress(achieved, braking);
+        self.record_progress(achieved, braking.accelerating || slows);
         if let Some(predictor) = &mut self.predictor {
             let mechanism = self.state.mechanism();
             predictor.record(mechanism, &self.rates[..mechanism.n()]);

@@ -26,6 +26,7 @@ mod secondary;
 mod shared;
 mod stall;
 mod steps;
+mod task_braking;
 mod task_edges;
 mod task_invariance;
 mod task_kinds;

@@ -6,14 +6,12 @@
 use super::super::edge::Edge;
 use super::super::escape::Linearised;
 use super::super::projection::TaskProjection;
+use super::super::saddle::AT_REST;
 use super::super::stall::BrakingState;
 use super::Servo;
 use crate::control::solver::saturation::{FED_FORWARD, Saturation};
 use crate::error::{Error, Result};
 use crate::linalg::{dot, norm};
-
-/// Velocities of all joints below this are those of rest (scaled) [1/s].
-const AT_REST: f64 = 1e-3;
 
 impl Servo {
     /// Bounds, computes and stores the joint velocities; where nothing is commanded, all joints brake.
