@@ -106,7 +106,7 @@ impl TaskServo {
             }
             let mut parts = [0.0_f64; 2];
             for (r, error) in rows.error.iter().enumerate() {
-                let scale = task.weight * rows.unit(r, self.options.length).powi(2);
+                let scale = member.weight * rows.unit(r, self.options.length).powi(2);
                 let velocity = task.gain * error + rows.feed_forward[r];
                 let all = self.last.iter().zip(&escape.columns).enumerate();
                 let moved: f64 = all.map(|(j, (y, c))| rows.jacobian[(r, j)] * c * y).sum();
@@ -170,7 +170,7 @@ impl TaskServo {
                 continue;
             }
             for (r, error) in rows.error.iter().enumerate() {
-                let scaled = task.weight * error * rows.unit(r, self.options.length).powi(2);
+                let scaled = member.weight * error * rows.unit(r, self.options.length).powi(2);
                 for (j, (x, column)) in out.iter_mut().zip(&escape.columns).enumerate() {
                     *x += column * scaled * rows.jacobian[(r, j)];
                 }

@@ -34,6 +34,8 @@ pub(super) struct Member {
     /// Its index, and its rows in the level.
     pub(super) task: usize,
     pub(super) rows: Range<usize>,
+    /// Its weight over the largest of the level [-].
+    pub(super) weight: f64,
     pub(super) direction_changed: bool,
     /// True if the linearised task goes beyond its range.
     pub(super) is_curved: bool,
@@ -64,10 +66,13 @@ impl Stack {
         levels.dedup();
         let stack = |level| {
             let (mut first, mut members) = (0, Vec::new());
-            for (i, task) in with_rows().filter(|(_, task)| task.level == level) {
+            let own = || with_rows().filter(|(_, task)| task.level == level);
+            let largest = own().map(|(_, task)| task.weight).fold(0.0, f64::max);
+            for (i, task) in own() {
                 let rows = first..first + task.objective.rows();
                 first = rows.end;
-                members.push(Member::new(i, rows, n, curvature(&task.objective)));
+                let weight = task.weight / largest;
+                members.push(Member::new((i, weight), rows, n, curvature(&task.objective)));
             }
             let starts = members.iter().map(|m| m.rows.start).collect();
             Self {
@@ -85,13 +90,14 @@ impl Stack {
 impl Member {
     /// Of a task in n unknowns.
     fn new(
-        task: usize,
+        (task, weight): (usize, f64),
         rows: Range<usize>,
         n: usize,
         curvature: Option<Box<FrameCurvature>>,
     ) -> Self {
         Self {
             task,
+            weight,
             direction_changed: false,
             is_curved: false,
             error: 0.0,
@@ -125,7 +131,7 @@ impl Member {
         if let Some(of_frame) = &mut self.curvature
             && of_frame.is_of(&task.objective)
         {
-            of_frame.add(q, (&self.left, task.weight.sqrt()), out);
+            of_frame.add(q, (&self.left, self.weight.sqrt()), out);
             return;
         }
         let damping = k * norm(&self.left);

@@ -120,7 +120,7 @@ impl TaskServo {
             let whole = &mut level.whole;
             for member in &mut *members {
                 let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
-                let root = task.weight.sqrt();
+                let root = member.weight.sqrt();
                 let mut error = 0.0;
                 let scale = |r: usize| root * rows.unit(r, length);
                 for (r, target) in whole.target[member.rows.clone()].iter_mut().enumerate() {

@@ -207,22 +207,15 @@ impl TaskServo {
         (!members.any(|member| is_custom(member.task))).then_some(level)
     }
 
-    /// The largest weight of a level.
-    fn weight_of(&self, level: usize) -> f64 {
-        let weights = self.stacks[level].members.iter().map(|m| self.tasks[m.task].weight);
-        weights.fold(f64::MIN_POSITIVE, f64::max)
-    }
-
     /// The motion with the velocities that are tried, along what a level asks for.
     fn part(&self, level: usize, rest: &mut TurningBack) -> f64 {
         let Motions::Tree(columns) = &self.motions else { return 0.0 };
         let all = rest.rates.iter_mut().zip(&rest.trial).zip(columns);
         all.for_each(|((rate, y), column)| *rate = y * column);
-        let (mut along, all, length) =
-            (Along::default(), self.weight_of(level), self.options.length);
+        let (mut along, length) = (Along::default(), self.options.length);
         for member in &self.stacks[level].members {
             let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
-            along.add((task, rows), &rest.rates, (task.weight / all, 0.0, length));
+            along.add((task, rows), &rest.rates, (member.weight, 0.0, length));
         }
         along.part
     }
@@ -265,8 +258,7 @@ impl TaskServo {
             }
         }
         rest.state.set(&rest.q)?;
-        let (mut then, all, length) =
-            (Along::default(), self.weight_of(level), self.options.length);
+        let (mut then, length) = (Along::default(), self.options.length);
         for member in &self.stacks[level].members {
             let (task, rows) = (&mut self.tasks[member.task], &mut rest.rows[member.task]);
             let mut written = Rows {
@@ -275,7 +267,7 @@ impl TaskServo {
                 jacobian: &mut rows.jacobian,
             };
             task.objective.evaluate(&task.name, &rest.state, &mut rest.scratch, &mut written)?;
-            then.add((task, rows), &rest.rates, (task.weight / all, time, length));
+            then.add((task, rows), &rest.rates, (member.weight, time, length));
         }
         if then.part >= 0.0 {
             return Ok(0.0);
