@@ -3,11 +3,13 @@
 //!
 //! Read `objective` (a task as an error and a Jacobian), `options` (gain, weight, level; reports),
 //! `task_servo` (one step), `motions` (its unknowns), `rows` (limits, distances, half-spaces), `stack`
-//! (the levels, solved with `solver/hierarchy.rs`), `linear_range` (how far they go), `braking` (what must stay possible after a step),
-//! `turning_back` (joints that stop in time), `escape` and `escaping` (from configurations in which they are lost), `velocity_mode` (twists in
+//! (the levels, solved with `solver/hierarchy.rs`), `linear_range` (how far they go), `braking` (what
+//! must stay possible after a step), `braking_in_time` (joints that stop before tasks turn back),
+//! `escape` and `escaping` (from configurations in which they are lost), `velocity_mode` (twists in
 //! place of targets) and `simulation`.
 
 mod braking;
+mod braking_in_time;
 mod braking_path;
 mod escape;
 mod escaping;

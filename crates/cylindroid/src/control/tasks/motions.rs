@@ -38,6 +38,17 @@ pub(super) struct Loops {
     weakest: Option<f64>,
 }
 
+/// What limits of the jerk permit in a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum JerkBounds<'a> {
+    /// Any velocity within the limits of positions and speeds.
+    None,
+    /// Every velocity from which the limits can be kept.
+    All,
+    /// Those on the way to these velocities of the joints, at which the accelerations end.
+    Towards(&'a [f64]),
+}
+
 impl Motions {
     /// For joints with these limits (n coordinates, then actuated loop joints).
     pub(super) fn new(

@@ -6,6 +6,7 @@
 //!          second-order change in a step; g q' >= (c - d) / dt where d < c
 //! Checked  tests/it/servo/tasks.rs, tests/it/servo/task_kinds.rs
 
+use super::motions::JerkBounds;
 use super::options::{MOST_PAIRS, MotionTask};
 use super::task_servo::TaskServo;
 use crate::control::servo::{JointState, jerk_limited_stopping_velocity};
@@ -18,17 +19,6 @@ const BRAKING: f64 = 0.5;
 
 /// Distances outside below this share of the reach come from roundings [-].
 const ROUNDING: f64 = 1e-6;
-
-/// What limits of the jerk permit in a step.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum JerkBounds<'a> {
-    /// Any velocity within the limits of positions and speeds.
-    None,
-    /// Every velocity from which the limits can be kept.
-    All,
-    /// Those on the way to these velocities of the joints, at which the accelerations end.
-    Towards(&'a [f64]),
-}
 
 impl TaskServo {
     /// Solves for the joint velocities by `solve`. With limits of the jerk twice: for those that the tasks ask for,
