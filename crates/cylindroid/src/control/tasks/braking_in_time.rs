@@ -148,8 +148,8 @@ impl TaskServo {
         along.part
     }
 
-    /// Time w in which the joints with the velocities that are tried stop, and their way [s, -]; the mean velocities
-    /// on it are loaded. All of them stop together, with limits of the jerk each as soon as it can.
+    /// Time w of the way on which the joints with the velocities that are tried stop together, and the way
+    /// [s, -]. Joints whose limited jerk lets them accelerate on have the velocities that they come to.
     fn stopping(&self, rest: &mut TurningBack) -> [f64; 2] {
         let Motions::Tree(columns) = &self.motions else { return [0.0; 2] };
         let (dt, mut longest) = (self.options.dt, 0.0_f64);
@@ -173,14 +173,15 @@ impl TaskServo {
     /// `now` along what it asks for, carry it back [-].
     fn way_back(&mut self, level: usize, rest: &mut TurningBack, now: f64) -> Result<f64> {
         let [time, way] = self.stopping(rest);
-        if way <= NEGLIGIBLE {
+        if !(way > NEGLIGIBLE && way.is_finite()) {
             return Ok(0.0);
         }
         rest.q.copy_from_slice(self.state.q());
         self.state.mechanism().integrate_in_place(&mut rest.q, &rest.rates, time);
         // Joints that meet a limit stop there, and the others go on.
-        for ((q, rate), limits) in rest.q.iter_mut().zip(&mut rest.rates).zip(&self.limits) {
-            let inside = clamp(*q, limits.lower, limits.upper);
+        let joints = rest.q.iter_mut().zip(&mut rest.rates).zip(self.state.q()).zip(&self.limits);
+        for (((q, rate), from), limits) in joints {
+            let inside = clamp(*q, limits.lower.min(*from), limits.upper.max(*from));
             if inside != *q {
                 (*q, *rate) = (inside, 0.0);
             }

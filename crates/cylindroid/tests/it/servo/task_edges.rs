@@ -92,27 +92,27 @@ fn rests_and_returns(name: &str, least: [usize; 2], quietest: [f64; 2]) {
 
 #[test]
 fn panda_rests_and_returns() {
-    rests_and_returns("panda", [21, 14], [0.5, 0.5]);
+    rests_and_returns("panda", [22, 17], [0.1, 0.1]);
 }
 
 #[test]
 fn ur5e_rests_and_returns() {
-    rests_and_returns("ur5e", [28, 27], [0.5, 0.5]);
+    rests_and_returns("ur5e", [29, 28], [0.5, 0.1]);
 }
 
 #[test]
 fn iiwa14_rests_and_returns() {
-    rests_and_returns("iiwa14", [29, 27], [0.1, 0.1]);
+    rests_and_returns("iiwa14", [29, 28], [0.1, 0.1]);
 }
 
 #[test]
 fn puma560_rests_and_returns() {
-    rests_and_returns("puma560", [27, 27], [0.8, 0.8]);
+    rests_and_returns("puma560", [27, 27], [0.5, 0.5]);
 }
 
 #[test]
 fn youbot_rests_and_returns() {
-    rests_and_returns("youbot", [27, 24], [1.2, 0.5]);
+    rests_and_returns("youbot", [27, 25], [0.2, 0.5]);
 }
 
 #[test]
