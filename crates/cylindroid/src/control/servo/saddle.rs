@@ -277,3 +277,42 @@ impl Saddle {
         1.0_f64.copysign(largest)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of no progress until it is lost.
+    fn patience(progress: &mut Progress) -> usize {
+        for step in 1..1000 {
+            progress.record(0.0, 1e-3);
+            if progress.is_lost {
+                return step;
+            }
+        }
+        panic!("{progress:?}")
+    }
+
+    /// A task that progresses again has the patience that its share gives it; more than all of its
+    /// motion counts as all.
+    #[test]
+    fn patience_begins_anew_where_a_task_is_freed() {
+        let whole = patience(&mut Progress::new());
+        assert!((0.2..0.25).contains(&(whole as f64 * 1e-3)), "{whole} steps");
+        for (share, expected) in [(1.0, whole), (3.0, whole)] {
+            let mut progress = Progress::new();
+            patience(&mut progress);
+            progress.record(share, 1e-3);
+            assert!(!progress.is_lost);
+            assert_eq!(patience(&mut progress), expected, "{share}");
+        }
+        let mut progress = Progress::new();
+        patience(&mut progress);
+        progress.record(0.04, 1e-3);
+        assert!(progress.is_lost);
+        progress.record(0.1, 1e-3);
+        let own = patience(&mut progress) as f64 * 1e-3;
+        // The time in which 0.1 falls to `STUCK`.
+        assert!((own - PATIENCE * 10.0_f64.ln()).abs() < 5e-3, "{own} s");
+    }
+}

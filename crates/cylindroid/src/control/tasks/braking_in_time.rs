@@ -95,37 +95,45 @@ impl TaskServo {
         }
         self.solve_aim();
         if share < 1.0 {
-            self.note_slower(rest, share);
+            rest.trial.copy_from_slice(&self.last);
+            self.part(level, rest);
+            self.note_slower(rest);
         }
         Ok(true)
     }
 
-    /// Reports that the slowest joint brakes all tasks.
-    fn note_slower(&mut self, rest: &TurningBack, share: f64) {
+    /// Reports that the slowest joint brakes all tasks, and what is left of their velocities.
+    fn note_slower(&mut self, rest: &TurningBack) {
         let all = rest.rates.iter().zip(&self.limits).enumerate();
         let times = all.map(|(i, (rate, limits))| (i, stopping_time(rate.abs(), limits)));
         let slowest = times.max_by(|a, b| a.1.total_cmp(&b.1));
         let stop = slowest
             .map(|(coordinate, _)| StoppedBy::Limit { coordinate, kind: LimitKind::Acceleration });
         for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
-            member.scale *= share;
+            let of_task = (&self.tasks[member.task], &self.rows[member.task]);
+            let mut along = Along::default();
+            along.add(of_task, &rest.rates, (1.0, 0.0, self.options.length));
+            if along.square > 0.0 {
+                member.scale = clamp(along.part / along.square, 0.0, 1.0);
+            }
             member.stopped_by = member.stopped_by.or(stop);
         }
     }
 
-    /// The first level with an error that counts, of tasks that may be evaluated elsewhere.
+    /// The first level with an error that counts or a motion, of tasks that may be evaluated elsewhere.
     fn open_level(&self) -> Option<usize> {
         let is_open = |stack: &Stack| {
             stack.members.iter().any(|member| {
                 let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
                 let mut parts = [0.0_f64; 2];
-                for (i, (error, forward)) in rows.error.iter().zip(&rows.feed_forward).enumerate() {
-                    let asked =
-                        if task.gain > 0.0 { error + forward / task.gain } else { *forward };
-                    parts[usize::from(!rows.is_length[i])] += asked * asked;
+                for (i, error) in rows.error.iter().enumerate() {
+                    parts[usize::from(!rows.is_length[i])] += error * error;
                 }
                 let [position, orientation] = parts.map(f64::sqrt);
-                position > task.tolerance.position || orientation > task.tolerance.orientation
+                let moves = rows.feed_forward.iter().any(|forward| *forward != 0.0);
+                moves
+                    || position > task.tolerance.position
+                    || orientation > task.tolerance.orientation
             })
         };
         let level = self.stacks.iter().position(is_open)?;

@@ -1,6 +1,8 @@
 //! Joints that accelerate slowly brake in time for the tasks of a servo.
 
-use cylindroid::control::{MotionTask, TaskObjective, TaskServo, TaskServoOptions};
+use cylindroid::control::{
+    LimitKind, MotionTask, StoppedBy, TaskObjective, TaskServo, TaskServoOptions,
+};
 
 use super::closed_edges::weakened;
 use super::escape::within;
@@ -69,6 +71,40 @@ fn weak_joints_arrive() {
             }
         }
     }
+}
+
+/// The share of the velocity that is left, and what brakes.
+#[test]
+fn braking_is_reported() {
+    let mut builder = Mechanism::builder("slide");
+    builder.joint(JointSpec {
+        limits: Limits { acceleration: 0.2, ..Limits::NONE },
+        ..JointSpec::new("x", JointKind::Prismatic, "base", "carriage")
+    });
+    let robot = builder.build().unwrap();
+    let objective = TaskObjective::Frame {
+        end_effector: robot.frame("carriage").unwrap().into(),
+        components: Task { components: [false, false, true, false, false, false], ..Task::POSE },
+        target: Pose::from_translation(Vec3::Z * 0.5).into(),
+    };
+    let options = TaskServoOptions { dt: 4e-3, ..TaskServoOptions::new(&robot) };
+    let mut servo =
+        TaskServo::new(&robot, vec![MotionTask::new("tool", objective)], options).unwrap();
+    let (mut q, mut last, mut braked) = (vec![0.0], 0.0, 0);
+    for _ in 0..2000 {
+        let asked = 5.0 * (0.5 - q[0]);
+        servo.step(&q).unwrap();
+        servo.advance(&mut q);
+        let (rate, report) = (servo.joint_velocities()[0], servo.reports()[0]);
+        if rate < last && rate < asked && report.stopped_by.is_some() {
+            let expected = StoppedBy::Limit { coordinate: 0, kind: LimitKind::Acceleration };
+            assert_eq!(report.stopped_by, Some(expected));
+            assert!((report.scale - rate / asked).abs() < 1e-9, "{report:?} {rate} {asked}");
+            braked += 1;
+        }
+        last = rate;
+    }
+    assert!(braked > 100 && (q[0] - 0.5).abs() < 1e-6, "{braked} {q:?}");
 }
 
 /// The weight of a task that is alone says nothing.
