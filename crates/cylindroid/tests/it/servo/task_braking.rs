@@ -183,3 +183,37 @@ fn twists_outwards_end_at_the_edge() {
         }
     }
 }
+
+/// Closed chains do not look ahead: how far they swing at the edge of their workspace.
+#[test]
+#[ignore = "a table"]
+fn table_of_closed_chains_of_tasks_at_the_edge() {
+    for name in ["five-bar", "3rrr", "delta", "stewart"] {
+        for acceleration in [0.5, 5.0, 40.0] {
+            let robot = weakened(name, acceleration);
+            let start = cylindroid::closure::assemble(&robot, robot.home(), &[]).unwrap().q;
+            let home = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
+            let mut worst = 0.0_f64;
+            for direction in [Vec3::X, Vec3::Y, -Vec3::Y] {
+                let target = home.translation + direction * (2.0 * robot.reach());
+                let objective = TaskObjective::Frame {
+                    end_effector: robot.tool().into(),
+                    components: Task::POSITION,
+                    target: Pose { translation: target, ..home }.into(),
+                };
+                let options = TaskServoOptions { dt: 1e-2, ..TaskServoOptions::new(&robot) };
+                let tasks = vec![MotionTask::new("tool", objective)];
+                let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
+                let (mut q, mut least) = (start.clone(), f64::INFINITY);
+                for _ in 0..3000 {
+                    servo.step(&q).unwrap();
+                    servo.advance(&mut q);
+                    let error = servo.reports()[0].position_error;
+                    least = least.min(error);
+                    worst = worst.max((error - least) / robot.reach());
+                }
+            }
+            println!("{name} at {acceleration}: back by {worst:.4} of reach");
+        }
+    }
+}
