@@ -42,7 +42,9 @@ pub(super) use plant::{Predictor, SimulatedRobot};
 pub(super) use saddle::{AT_REST, Progress, Saddle, Surroundings};
 pub(super) use secondary::{SecondaryVelocities, add_posture};
 pub(super) use stall::{BrakingState, Remainder, StallDetector};
-pub(super) use stopping::{jerk_limited_stopping_velocity, stopping_time};
+pub(super) use stopping::{
+    NEGLIGIBLE_WAY_BACK, SHARE_HALVINGS, jerk_limited_stopping_velocity, stopping_time,
+};
 pub(super) use task_space::{TaskScaling, TaskSpace, is_locked};
 
 pub use controller::Servo;

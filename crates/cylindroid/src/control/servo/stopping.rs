@@ -10,6 +10,13 @@
 use crate::model::Limits;
 use crate::scalar::clamp;
 
+/// Longest way back of a task whose joints brake that counts as none (scaled) [-]: joints that follow a bent
+/// edge always have a short one, and would creep along it.
+pub(in crate::control) const NEGLIGIBLE_WAY_BACK: f64 = 2e-4;
+
+/// Halvings of the interval in which the largest share lies of velocities from which no task turns back.
+pub(in crate::control) const SHARE_HALVINGS: usize = 6;
+
 /// The time in which a joint stops from this speed, with the ramps of its jerk limit (s).
 #[inline]
 pub(in crate::control) fn stopping_time(speed: f64, limits: &Limits) -> f64 {

@@ -5,7 +5,7 @@
 //!          u = K e + feed-forward, is g = u . J v, now and where they rest, with targets that have moved
 //!          on for w. If it changes its sign on the way, the tasks come back by about
 //!          w g_rest^2 / (2 (g - g_rest) |u|), by w (g + g_rest) / (2 |u|) if both are negative. Where this
-//!          is more than `NEGLIGIBLE`, and less after braking, v lies between the braked velocities of the
+//!          is more than `NEGLIGIBLE_WAY_BACK`, and less after braking, v lies between the braked velocities of the
 //!          last step and those of the solver, as near to these as it may
 //! Shapes   v: n; u: the rows of the level
 //! Units    lengths over the characteristic length, roots of the weights over the largest
@@ -21,7 +21,7 @@ use super::objective::{Rows, TaskObjective};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
 use super::turning_back::{Along, TurningBack};
-use crate::control::servo::stopping_time;
+use crate::control::servo::{NEGLIGIBLE_WAY_BACK, SHARE_HALVINGS, stopping_time};
 use crate::control::solver::active_set::Precision;
 use crate::control::solver::bounds::LimitKind;
 use crate::control::solver::saturation::brake;
@@ -29,17 +29,10 @@ use crate::error::Result;
 use crate::linalg::norm;
 use crate::scalar::{clamp, largest};
 
-/// Longest way back that counts as none (scaled) [-]: joints that follow a bent edge always have a short
-/// one, and would creep along it.
-const NEGLIGIBLE: f64 = 2e-4;
-
 /// Braking that carries the tasks back so many times as far as going on is no help [-]: what turns back
 /// cannot be stopped in time, and the other joints come nearer. With limits of the jerk once, for their
 /// braking is felt late.
 const WORSE: f64 = 4.0;
-
-/// Halvings of the interval in which the largest share lies.
-const HALVINGS: usize = 6;
 
 impl TaskServo {
     /// Slows the velocities of the step such that the joints can stop in time. True if they had to be
@@ -57,7 +50,7 @@ impl TaskServo {
         rest.mix(1.0);
         let now = self.part(level, rest);
         let back = self.way_back(level, rest, now)?;
-        if back <= NEGLIGIBLE {
+        if back <= NEGLIGIBLE_WAY_BACK {
             return Ok(false);
         }
         self.load_braked();
@@ -71,7 +64,7 @@ impl TaskServo {
             1.0
         } else {
             let mut failed = Ok(());
-            let share = largest(0.0, 1.0, HALVINGS, |share| {
+            let share = largest(0.0, 1.0, SHARE_HALVINGS, |share| {
                 rest.mix(share);
                 let part = then + share * (now - then);
                 if part <= 0.0 && !has_jerks {
@@ -82,7 +75,7 @@ impl TaskServo {
                         failed = Err(error);
                         false
                     },
-                    |back| back <= NEGLIGIBLE,
+                    |back| back <= NEGLIGIBLE_WAY_BACK,
                 )
             });
             failed?;
@@ -181,7 +174,7 @@ impl TaskServo {
     /// `now` along what it asks for, carry it back [-].
     fn way_back(&mut self, level: usize, rest: &mut TurningBack, now: f64) -> Result<f64> {
         let [time, way] = self.stopping(rest);
-        if !(way > NEGLIGIBLE && way.is_finite()) {
+        if !(way > NEGLIGIBLE_WAY_BACK && way.is_finite()) {
             return Ok(0.0);
         }
         rest.q.copy_from_slice(self.state.q());

@@ -5,7 +5,8 @@
 //!          joint velocities nearest to the postures. Inequalities stand above all levels:
 //!          position, velocity and acceleration limits (`limits.rs`), and for every near pair of
 //!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance;
-//!          and braking from any velocity ends without contact (`braking.rs`)
+//!          and braking from any velocity ends without contact (`braking.rs`) and, in trees, before a
+//!          task turns back (`braking_in_time.rs`)
 //! Shapes   n joint velocities, the sum of the tasks' rows
 //! Units    rows of lengths are divided by the characteristic length
 //! Valid    trees and closed chains: arms, hands, several arms, mobile and floating bases, objects

@@ -4,7 +4,7 @@
 //!          longest of their stopping times. The motion along x, what is left of the error or the twist,
 //!          is g = x . J v, now and where they rest. If it changes its sign on the way, the tool comes
 //!          back by about w g_rest^2 / (2 (g - g_rest) |x|), in scaled task coordinates. Where this is more
-//!          than `NEGLIGIBLE`, v lies between the braked velocities of the last step and those that were
+//!          than `NEGLIGIBLE_WAY_BACK`, v lies between the braked velocities of the last step and those that were
 //!          to follow, as near to these as it may; where the tool moves back already, whichever of the
 //!          two moves it back less
 //! Valid    trees of joints with one coordinate and with acceleration limits
@@ -14,20 +14,13 @@
 
 use super::super::projection::TaskProjection;
 use super::super::step::{Aim, Target};
-use super::super::stopping::stopping_time;
+use super::super::stopping::{NEGLIGIBLE_WAY_BACK, SHARE_HALVINGS, stopping_time};
 use super::Servo;
 use super::edge_aim::TRACKED;
 use crate::control::solver::saturation::brake;
 use crate::linalg::{dot, norm};
 use crate::scalar::largest;
 use crate::spatial::{Pose, Twist};
-
-/// Longest way back that counts as none (scaled) [-]: joints that follow a bent edge always have a short
-/// one, and would creep along it.
-const NEGLIGIBLE: f64 = 2e-4;
-
-/// Halvings of the interval in which the largest share lies.
-const HALVINGS: usize = 6;
 
 impl Servo {
     /// What the joints of this step follow to its end, if they must brake before it.
@@ -102,7 +95,7 @@ impl Servo {
         let then = dot(&self.achieved_twist, &self.edge_error);
         // The way back, of a part of the motion that falls evenly.
         let back = 0.5 * then * then / (now - then) * way;
-        then < 0.0 && back > NEGLIGIBLE * norm(&self.edge_error)
+        then < 0.0 && back > NEGLIGIBLE_WAY_BACK * norm(&self.edge_error)
     }
 
     /// Slows the velocities of the step (`primary`) such that the joints can stop in time. True if they
@@ -125,7 +118,7 @@ impl Servo {
             let share = if now < 0.0 {
                 f64::from(u8::from(then <= now))
             } else {
-                largest(0.0, 1.0, HALVINGS, |share| {
+                largest(0.0, 1.0, SHARE_HALVINGS, |share| {
                     mix(share, &mut trial, &rates);
                     !self.turns_back(aim, q, (&trial, then + share * (now - then)))
                 })
