@@ -4,9 +4,9 @@
 //!          longest of their stopping times. The motion along what the tasks of a level ask for,
 //!          u = K e + feed-forward, is g = u . J v, now and where they rest, with targets that have moved
 //!          on for w. If it changes its sign on the way, the tasks come back by about
-//!          w g_rest^2 / (2 (g - g_rest) |u|), by w (g + g_rest) / (2 |u|) if both are negative. Where this
-//!          is more than `NEGLIGIBLE_WAY_BACK`, and less after braking, v lies between the braked velocities of the
-//!          last step and those of the solver, as near to these as it may
+//!          w g_rest^2 / (2 (g - g_rest) |u|), by w |g + g_rest| / (2 |u|) if both are negative. Where this
+//!          is more than `NEGLIGIBLE_WAY_BACK`, and less after braking, v lies between the braked
+//!          velocities of the last step and those of the solver, as near to these as it may
 //! Shapes   v: n; u: the rows of the level
 //! Units    lengths over the characteristic length, roots of the weights over the largest
 //! Valid    trees with acceleration limits; the first level with an error, without custom tasks
@@ -53,7 +53,7 @@ impl TaskServo {
         if back <= NEGLIGIBLE_WAY_BACK {
             return Ok(false);
         }
-        self.load_braked();
+        self.load_braked(rest);
         self.solve_within_limits(Self::solve_aim);
         rest.braked.copy_from_slice(&self.last);
         rest.mix(0.0);
@@ -89,7 +89,7 @@ impl TaskServo {
         self.solve_aim();
         if share < 1.0 {
             rest.trial.copy_from_slice(&self.last);
-            self.part(level, rest);
+            self.load_rates(rest);
             self.note_slower(rest);
         }
         Ok(true)
@@ -105,7 +105,7 @@ impl TaskServo {
         for member in self.stacks.iter_mut().flat_map(|s| &mut s.members) {
             let of_task = (&self.tasks[member.task], &self.rows[member.task]);
             let mut along = Along::default();
-            along.add(of_task, &rest.rates, (1.0, 0.0, self.options.length));
+            along.add(of_task, |j| rest.rates[j], (1.0, 0.0, self.options.length));
             if along.square > 0.0 {
                 member.scale = clamp(along.part / along.square, 0.0, 1.0);
             }
@@ -118,15 +118,8 @@ impl TaskServo {
         let is_open = |stack: &Stack| {
             stack.members.iter().any(|member| {
                 let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
-                let mut parts = [0.0_f64; 2];
-                for (i, error) in rows.error.iter().enumerate() {
-                    parts[usize::from(!rows.is_length[i])] += error * error;
-                }
-                let [position, orientation] = parts.map(f64::sqrt);
                 let moves = rows.feed_forward.iter().any(|forward| *forward != 0.0);
-                moves
-                    || position > task.tolerance.position
-                    || orientation > task.tolerance.orientation
+                moves || rows.exceeds(task.tolerance)
             })
         };
         let level = self.stacks.iter().position(is_open)?;
@@ -136,15 +129,20 @@ impl TaskServo {
         (!members.any(|member| is_custom(member.task))).then_some(level)
     }
 
-    /// The motion with the velocities that are tried, along what a level asks for.
-    fn part(&self, level: usize, rest: &mut TurningBack) -> f64 {
-        let Motions::Tree(columns) = &self.motions else { return 0.0 };
+    /// The velocities of the joints for unknowns that are tried.
+    fn load_rates(&self, rest: &mut TurningBack) {
+        let Motions::Tree(columns) = &self.motions else { return };
         let all = rest.rates.iter_mut().zip(&rest.trial).zip(columns);
         all.for_each(|((rate, y), column)| *rate = y * column);
+    }
+
+    /// The motion with the velocities that are tried, along what a level asks for.
+    fn part(&self, level: usize, rest: &mut TurningBack) -> f64 {
+        self.load_rates(rest);
         let (mut along, length) = (Along::default(), self.options.length);
         for member in &self.stacks[level].members {
             let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
-            along.add((task, rows), &rest.rates, (member.weight, 0.0, length));
+            along.add((task, rows), |j| rest.rates[j], (member.weight, 0.0, length));
         }
         along.part
     }
@@ -152,15 +150,13 @@ impl TaskServo {
     /// Time w of the way on which the joints with the velocities that are tried stop together, and the way
     /// [s, -]. Joints whose limited jerk lets them accelerate on have the velocities that they come to.
     fn stopping(&self, rest: &mut TurningBack) -> [f64; 2] {
-        let Motions::Tree(columns) = &self.motions else { return [0.0; 2] };
+        self.load_rates(rest);
         let (dt, mut longest) = (self.options.dt, 0.0_f64);
-        let tried = rest.trial.iter().zip(columns).map(|(y, column)| y * column);
-        let joints = rest.rates.iter_mut().zip(tried).zip(&self.rates).zip(&self.limits);
-        for (((rate, tried), before), limits) in joints {
-            *rate = tried;
-            let acceleration = (tried - before) / dt;
+        let joints = rest.rates.iter_mut().zip(&self.rates).zip(&self.limits);
+        for ((rate, before), limits) in joints {
+            let acceleration = (*rate - before) / dt;
             let mut ramp = 0.0;
-            if limits.jerk < f64::INFINITY && acceleration * tried > 0.0 {
+            if limits.jerk < f64::INFINITY && acceleration * *rate > 0.0 {
                 ramp = acceleration.abs() / limits.jerk;
                 *rate += 0.5 * acceleration * ramp;
             }
@@ -197,7 +193,7 @@ impl TaskServo {
                 jacobian: &mut rows.jacobian,
             };
             task.objective.evaluate(&task.name, &rest.state, &mut rest.scratch, &mut written)?;
-            then.add((task, rows), &rest.rates, (member.weight, time, length));
+            then.add((task, rows), |j| rest.rates[j], (member.weight, time, length));
         }
         if then.part >= 0.0 {
             return Ok(0.0);
@@ -212,15 +208,13 @@ impl TaskServo {
     }
 
     /// The last velocities, slowed together; with limits of the jerk rest, towards which they brake.
-    fn load_braked(&mut self) {
+    fn load_braked(&mut self, rest: &mut TurningBack) {
         if self.desired_rates.is_some() {
             self.aim.fill(0.0);
             return;
         }
-        let mut braked = std::mem::take(&mut self.lowest_velocities);
-        brake(&self.rates, &self.bounds, &mut braked);
-        self.motions.unknowns_of(&braked, &mut self.aim);
-        self.lowest_velocities = braked;
+        brake(&self.rates, &self.bounds, &mut rest.rates);
+        self.motions.unknowns_of(&rest.rates, &mut self.aim);
     }
 
     /// The velocities nearest to the `aim` within all inequalities.

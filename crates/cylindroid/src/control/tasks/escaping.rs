@@ -10,6 +10,7 @@ use super::escape::{Achieved, Escape, Phase};
 use super::levels::USUAL_GAIN;
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
+use super::turning_back::Along;
 use crate::control::servo::{AT_REST, Surroundings};
 use crate::control::solver::bounds::VelocityBounds;
 use crate::error::Result;
@@ -94,7 +95,8 @@ impl TaskServo {
     /// What the velocities of this step do for the first level.
     fn achieved(&self) -> Option<Achieved> {
         let (escape, first) = (self.escape.as_ref()?, self.stacks.first()?);
-        let (mut along, mut wanted, mut size, mut is_open) = (0.0, 0.0, 0.0, false);
+        let (mut along, mut size, mut is_open) = (Along::default(), 0.0, false);
+        let length = self.options.length;
         for member in &first.members {
             let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
             let stop = member.stopped_by;
@@ -104,22 +106,14 @@ impl TaskServo {
             if !escape.counts(member.task, &task.objective) {
                 continue;
             }
-            let mut parts = [0.0_f64; 2];
+            let velocity = |j: usize| escape.columns[j] * self.last[j];
+            along.add((task, rows), velocity, (member.weight, 0.0, length));
             for (r, error) in rows.error.iter().enumerate() {
-                let scale = member.weight * rows.unit(r, self.options.length).powi(2);
-                let velocity = task.gain * error + rows.feed_forward[r];
-                let all = self.last.iter().zip(&escape.columns).enumerate();
-                let moved: f64 = all.map(|(j, (y, c))| rows.jacobian[(r, j)] * c * y).sum();
-                along += scale * velocity * moved;
-                wanted += scale * velocity * velocity;
-                size += scale * error * error;
-                parts[usize::from(!rows.is_length[r])] += error * error;
+                size += member.weight * (error * rows.unit(r, length)).powi(2);
             }
-            let [position, orientation] = parts.map(f64::sqrt);
-            is_open |=
-                position > task.tolerance.position || orientation > task.tolerance.orientation;
+            is_open |= rows.exceeds(task.tolerance);
         }
-        let share = if wanted > 0.0 { along / wanted } else { 1.0 };
+        let share = if along.square > 0.0 { along.part / along.square } else { 1.0 };
         is_open.then(|| Achieved { share, error: size.sqrt() })
     }
 

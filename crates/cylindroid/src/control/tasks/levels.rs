@@ -8,6 +8,7 @@ use std::ops::Range;
 use super::frame_curvature::FrameCurvature;
 use super::objective::TaskObjective;
 use super::options::{MotionTask, StoppedBy};
+use crate::control::servo::PoseTolerance;
 use crate::control::solver::active_set::{DampedLevel, Level};
 use crate::control::solver::hierarchy::ScaledLevel;
 use crate::linalg::{Basis, Matrix, norm};
@@ -169,6 +170,16 @@ impl TaskRows {
     /// Scale of a row: 1 / length of those that are lengths [1/m], 1 of angles.
     pub(super) fn unit(&self, row: usize, length: f64) -> f64 {
         if self.is_length[row] { 1.0 / length } else { 1.0 }
+    }
+
+    /// True if the error exceeds a tolerance.
+    pub(super) fn exceeds(&self, tolerance: PoseTolerance) -> bool {
+        let mut parts = [0.0_f64; 2];
+        for (error, is_length) in self.error.iter().zip(&self.is_length) {
+            parts[usize::from(!is_length)] += error * error;
+        }
+        let [position, orientation] = parts.map(f64::sqrt);
+        position > tolerance.position || orientation > tolerance.orientation
     }
 
     /// The rate at which these joint velocities reduce the error, its lengths divided by `length`

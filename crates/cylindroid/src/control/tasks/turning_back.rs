@@ -42,14 +42,14 @@ impl Along {
     pub(super) fn add(
         &mut self,
         (task, rows): (&MotionTask, &TaskRows),
-        rates: &[f64],
+        rate: impl Fn(usize) -> f64,
         (weight, later, length): (f64, f64, f64),
     ) {
         for (r, (error, forward)) in rows.error.iter().zip(&rows.feed_forward).enumerate() {
             let asked = task.gain * (error + later * forward) + forward;
             let scaled = weight * asked * rows.unit(r, length).powi(2);
-            let all = rates.iter().enumerate();
-            self.part += scaled * all.map(|(j, rate)| rows.jacobian[(r, j)] * rate).sum::<f64>();
+            let columns = 0..rows.jacobian.cols();
+            self.part += scaled * columns.map(|j| rows.jacobian[(r, j)] * rate(j)).sum::<f64>();
             self.square += scaled * asked;
         }
     }

@@ -49,8 +49,8 @@ fn weak_joints_arrive() {
         for (acceleration, jerk, most, seconds) in [
             (0.5, f64::INFINITY, 1e-3, 12.0),
             (2.0, f64::INFINITY, 1e-3, 8.0),
-            (f64::INFINITY, 30.0, 0.05, 10.0),
-            (2.0, 5.0, 0.05, 20.0),
+            (f64::INFINITY, 30.0, 0.02, 10.0),
+            (2.0, 5.0, 0.02, 20.0),
         ] {
             let robot = weakened(name, acceleration);
             let mut random = Random(73);

@@ -4,9 +4,9 @@
 //!          longest of their stopping times. The motion along x, what is left of the error or the twist,
 //!          is g = x . J v, now and where they rest. If it changes its sign on the way, the tool comes
 //!          back by about w g_rest^2 / (2 (g - g_rest) |x|), in scaled task coordinates. Where this is more
-//!          than `NEGLIGIBLE_WAY_BACK`, v lies between the braked velocities of the last step and those that were
-//!          to follow, as near to these as it may; where the tool moves back already, whichever of the
-//!          two moves it back less
+//!          than `NEGLIGIBLE_WAY_BACK`, v lies between the braked velocities of the last step and those
+//!          that were to follow, as near to these as it may; where the tool moves back already, whichever
+//!          of the two moves it back less
 //! Valid    trees of joints with one coordinate and with acceleration limits
 //! Why so   a step knows the task where it is. Joints that cannot stop there pass the place where the
 //!          tool no longer moves along its twist or towards its target, and it swings
