@@ -7,16 +7,16 @@
 //!          w g_rest^2 / (2 (g - g_rest) |u|), by w |g + g_rest| / (2 |u|) if both are negative. Where this
 //!          is more than `NEGLIGIBLE_WAY_BACK`, and less after braking, v lies between the braked
 //!          velocities of the last step and those of the solver, as near to these as it may
-//! Shapes   v: n; u: the rows of the level
+//! Shapes   v: n, in a closed chain the velocities that follow its drives; u: the rows of the level
 //! Units    lengths over the characteristic length, roots of the weights over the largest
-//! Valid    trees with acceleration limits; the first level with an error, without custom tasks
+//! Valid    acceleration or jerk limits; the first level with an error, without custom tasks
 //! Cost     one evaluation of the tasks of the level while the joints move, some more while they brake
 //! Why so   a step knows the tasks where it is: K e alone asks for more than weak joints can brake, and
 //!          at the edge of reach they pass the place where nothing more can be gained, and swing
 //! Checked  tests/it/servo/task_braking.rs, tests/allocation/main.rs
 
 use super::levels::Stack;
-use super::motions::{JerkBounds, Motions};
+use super::motions::JerkBounds;
 use super::objective::{Rows, TaskObjective};
 use super::options::StoppedBy;
 use super::task_servo::TaskServo;
@@ -89,7 +89,7 @@ impl TaskServo {
         self.solve_aim();
         if share < 1.0 {
             rest.trial.copy_from_slice(&self.last);
-            self.load_rates(rest);
+            self.motions.rates_of(&rest.trial, &mut rest.rates);
             self.note_slower(rest);
         }
         Ok(true)
@@ -98,6 +98,7 @@ impl TaskServo {
     /// Reports that the slowest joint brakes all tasks, and what is left of their velocities.
     fn note_slower(&mut self, rest: &TurningBack) {
         let all = rest.rates.iter().zip(&self.limits).enumerate();
+        let all = all.filter(|(i, _)| self.motions.is_driven(*i));
         let times = all.map(|(i, (rate, limits))| (i, stopping_time(rate.abs(), limits)));
         let slowest = times.max_by(|a, b| a.1.total_cmp(&b.1));
         let stop = slowest
@@ -129,16 +130,9 @@ impl TaskServo {
         (!members.any(|member| is_custom(member.task))).then_some(level)
     }
 
-    /// The velocities of the joints for unknowns that are tried.
-    fn load_rates(&self, rest: &mut TurningBack) {
-        let Motions::Tree(columns) = &self.motions else { return };
-        let all = rest.rates.iter_mut().zip(&rest.trial).zip(columns);
-        all.for_each(|((rate, y), column)| *rate = y * column);
-    }
-
     /// The motion with the velocities that are tried, along what a level asks for.
     fn part(&self, level: usize, rest: &mut TurningBack) -> f64 {
-        self.load_rates(rest);
+        self.motions.rates_of(&rest.trial, &mut rest.rates);
         let (mut along, length) = (Along::default(), self.options.length);
         for member in &self.stacks[level].members {
             let (task, rows) = (&self.tasks[member.task], &self.rows[member.task]);
@@ -150,10 +144,11 @@ impl TaskServo {
     /// Time w of the way on which the joints with the velocities that are tried stop together, and the way
     /// [s, -]. Joints whose limited jerk lets them accelerate on have the velocities that they come to.
     fn stopping(&self, rest: &mut TurningBack) -> [f64; 2] {
-        self.load_rates(rest);
+        self.motions.rates_of(&rest.trial, &mut rest.rates);
         let (dt, mut longest) = (self.options.dt, 0.0_f64);
-        let joints = rest.rates.iter_mut().zip(&self.rates).zip(&self.limits);
-        for ((rate, before), limits) in joints {
+        let joints = rest.rates.iter_mut().zip(&self.rates).zip(&self.limits).enumerate();
+        // Passive joints follow the others.
+        for (_, ((rate, before), limits)) in joints.filter(|(i, _)| self.motions.is_driven(*i)) {
             let acceleration = (*rate - before) / dt;
             let mut ramp = 0.0;
             if limits.jerk < f64::INFINITY && acceleration * *rate > 0.0 {
@@ -173,17 +168,9 @@ impl TaskServo {
         if !(way > NEGLIGIBLE_WAY_BACK && way.is_finite()) {
             return Ok(0.0);
         }
-        rest.q.copy_from_slice(self.state.q());
-        self.state.mechanism().integrate_in_place(&mut rest.q, &rest.rates, time);
-        // Joints that meet a limit stop there, and the others go on.
-        let joints = rest.q.iter_mut().zip(&mut rest.rates).zip(self.state.q()).zip(&self.limits);
-        for (((q, rate), from), limits) in joints {
-            let inside = clamp(*q, limits.lower.min(*from), limits.upper.max(*from));
-            if inside != *q {
-                (*q, *rate) = (inside, 0.0);
-            }
+        if !rest.go_on(&self.state, &self.limits, time)? {
+            return Ok(0.0);
         }
-        rest.state.set(&rest.q)?;
         let (mut then, length) = (Along::default(), self.options.length);
         for member in &self.stacks[level].members {
             let (task, rows) = (&mut self.tasks[member.task], &mut rest.rows[member.task]);

@@ -182,6 +182,17 @@ impl Motions {
         }
     }
 
+    /// The joint velocities for y alone.
+    pub(super) fn rates_of(&self, y: &[f64], rates: &mut [f64]) {
+        match self {
+            Self::Tree(columns) => {
+                let all = rates.iter_mut().zip(y).zip(columns);
+                all.for_each(|((rate, y), column)| *rate = y * column);
+            }
+            Self::Loops(loops) => loops.coupling.expand(y, rates),
+        }
+    }
+
     /// The joint velocities for y, within the bounds to the last bit; `rates` are those before.
     pub(super) fn velocities(&mut self, y: &[f64], bounds: &[VelocityBounds], rates: &mut [f64]) {
         match self {
@@ -211,6 +222,14 @@ impl Motions {
         match self {
             Self::Tree(_) => true,
             Self::Loops(loops) => loops.coupling.is_actuated[i],
+        }
+    }
+
+    /// True for a joint that the servo moves of itself.
+    pub(super) fn is_driven(&self, i: usize) -> bool {
+        match self {
+            Self::Tree(columns) => columns[i] != 0.0,
+            Self::Loops(_) => self.is_actuated(i),
         }
     }
 

@@ -5,8 +5,8 @@
 //!          joint velocities nearest to the postures. Inequalities stand above all levels:
 //!          position, velocity and acceleration limits (`limits.rs`), and for every near pair of
 //!          bodies  g q' >= -v(d - gap),  v the velocity from which the pair stops in that distance;
-//!          and braking from any velocity ends without contact (`braking.rs`) and, in trees, before a
-//!          task turns back (`braking_in_time.rs`)
+//!          and braking from any velocity ends without contact (`braking.rs`) and before a task
+//!          turns back (`braking_in_time.rs`)
 //! Shapes   n joint velocities, the sum of the tasks' rows
 //! Units    rows of lengths are divided by the characteristic length
 //! Valid    trees and closed chains: arms, hands, several arms, mobile and floating bases, objects
@@ -193,7 +193,7 @@ impl TaskServo {
             rows,
             set: ActiveSet::new(u, inequalities),
             gradients: tasks.iter().map(|t| t.objective.gradient(mechanism, length)).collect(),
-            turning_back: TurningBack::new(mechanism, &motions, &limits, &tasks).map(Box::new),
+            turning_back: TurningBack::new(mechanism, &motions, &limits, &tasks)?.map(Box::new),
             limits,
             bounds: vec![VelocityBounds::NONE; v],
             near: Vec::with_capacity(capacity + MOST_PAIRS),

@@ -10,8 +10,18 @@ use super::levels::TaskRows;
 use super::motions::Motions;
 use super::objective::Scratch;
 use super::options::MotionTask;
+use crate::control::servo::LoopMotions;
+use crate::error::Result;
 use crate::kinematics::State;
 use crate::model::{Limits, Mechanism};
+use crate::scalar::clamp;
+
+/// Largest part of the way of a joint in a closed chain in one piece [rad, or lengths of the mechanism]:
+/// the passive joints follow it.
+const PIECE: f64 = 0.25;
+
+/// Pieces at most; of a longer way nothing is known.
+const MOST_PIECES: f64 = 32.0;
 
 /// Where the joints come to rest, and workspace.
 #[derive(Debug, Clone)]
@@ -27,6 +37,17 @@ pub(super) struct TurningBack {
     pub(super) solved: Vec<f64>,
     pub(super) braked: Vec<f64>,
     pub(super) trial: Vec<f64>,
+    loops: Option<Box<LoopsAhead>>,
+}
+
+/// What a closed chain needs besides.
+#[derive(Debug, Clone)]
+struct LoopsAhead {
+    motions: LoopMotions,
+    are_actuated: Vec<bool>,
+    /// Of the joints with drives on their way, and of all of them in a piece of it.
+    change: Vec<f64>,
+    moved: Vec<f64>,
 }
 
 /// A motion along what the tasks of a level ask for.
@@ -56,35 +77,112 @@ impl Along {
 }
 
 impl TurningBack {
-    /// For joints with these limits; `None` where nothing turns back, or nothing is known about it.
+    /// For joints with these limits; `None` where nothing turns back.
     pub(super) fn new(
         mechanism: &Mechanism,
         motions: &Motions,
         limits: &[Limits],
         tasks: &[MotionTask],
-    ) -> Option<Self> {
-        let Motions::Tree(columns) = motions else { return None };
-        let mut moving = limits.iter().zip(columns).filter(|(_, column)| **column != 0.0);
-        if !moving.any(|(l, _)| l.acceleration < f64::INFINITY || l.jerk < f64::INFINITY) {
-            return None;
+    ) -> Result<Option<Self>> {
+        let mut moving = limits.iter().enumerate().filter(|(i, _)| motions.is_driven(*i));
+        if !moving.any(|(_, l)| l.acceleration < f64::INFINITY || l.jerk < f64::INFINITY) {
+            return Ok(None);
         }
-        let n = mechanism.n();
+        let (n, v, u) = (mechanism.n(), limits.len(), motions.unknowns());
         let needs_masses = tasks.iter().any(|task| task.objective.needs_masses());
-        Some(Self {
-            state: mechanism.state(mechanism.home()).ok()?,
+        let loops =
+            motions.loops().map(|motions| LoopsAhead::new(mechanism, motions)).transpose()?;
+        Ok(Some(Self {
+            state: mechanism.state(mechanism.home())?,
             scratch: Scratch::new(mechanism, needs_masses),
             rows: tasks.iter().map(|task| TaskRows::new(&task.objective, n)).collect(),
             q: vec![0.0; n],
-            rates: vec![0.0; n],
-            solved: vec![0.0; n],
-            braked: vec![0.0; n],
-            trial: vec![0.0; n],
-        })
+            rates: vec![0.0; v],
+            solved: vec![0.0; u],
+            braked: vec![0.0; u],
+            trial: vec![0.0; u],
+            loops: loops.map(Box::new),
+        }))
     }
 
     /// Velocities between the braked ones and those of the solver.
     pub(super) fn mix(&mut self, share: f64) {
         let all = self.trial.iter_mut().zip(&self.braked).zip(&self.solved);
         all.for_each(|((trial, braked), solved)| *trial = braked + share * (solved - braked));
+    }
+
+    /// Moves the state on from `start` for this time with the velocities that are tried. Joints that meet
+    /// a limit stop there, and the others go on. False where the loops cannot be followed so far.
+    pub(super) fn go_on(&mut self, start: &State, limits: &[Limits], time: f64) -> Result<bool> {
+        let Self { q, rates, .. } = self;
+        if let Some(loops) = &mut self.loops {
+            if !loops.go_on(start, limits, (rates, time))? {
+                return Ok(false);
+            }
+            q.copy_from_slice(loops.motions.q());
+        } else {
+            q.copy_from_slice(start.q());
+            start.mechanism().integrate_in_place(q, rates, time);
+            for (((q, rate), from), l) in q.iter_mut().zip(rates).zip(start.q()).zip(limits) {
+                let inside = clamp(*q, l.lower.min(*from), l.upper.max(*from));
+                if inside != *q {
+                    (*q, *rate) = (inside, 0.0);
+                }
+            }
+        }
+        self.state.set(&self.q)?;
+        Ok(true)
+    }
+}
+
+impl LoopsAhead {
+    fn new(mechanism: &Mechanism, motions: &LoopMotions) -> Result<Self> {
+        let v = motions.velocities();
+        let mut motions = motions.clone();
+        // A copy has no memory of its own before it is loaded once.
+        motions.set_closed(mechanism.home())?;
+        let are_actuated = motions.are_actuated();
+        Ok(Self { motions, are_actuated, change: vec![0.0; v], moved: vec![0.0; v] })
+    }
+
+    /// The same of the drives, which the passive joints follow.
+    fn go_on(
+        &mut self,
+        start: &State,
+        limits: &[Limits],
+        (rates, time): (&mut [f64], f64),
+    ) -> Result<bool> {
+        if !self.motions.set_closed(start.q())? {
+            return Ok(false);
+        }
+        let mut most = 0.0_f64;
+        let drives = self.change.iter_mut().zip(&mut *rates).zip(&self.are_actuated);
+        for (i, ((change, rate), is_actuated)) in drives.enumerate() {
+            if !is_actuated {
+                (*change, *rate) = (0.0, 0.0);
+                continue;
+            }
+            let from = start.q().get(i).copied().unwrap_or(0.0);
+            let (lower, upper) = (limits[i].lower - from, limits[i].upper - from);
+            *change = clamp(*rate * time, lower.min(0.0), upper.max(0.0));
+            if *change != *rate * time {
+                *rate = 0.0;
+            }
+            most = most.max(change.abs() / start.mechanism().unit_of(i));
+        }
+        let pieces = (most / PIECE).ceil();
+        if !(pieces <= MOST_PIECES) {
+            return Ok(false);
+        }
+        self.change.iter_mut().for_each(|change| *change /= pieces.max(1.0));
+        for _ in 0..pieces as usize {
+            if !self.motions.follow(&self.change, &mut self.moved)? {
+                return Ok(false);
+            }
+        }
+        self.change.copy_from_slice(rates);
+        rates.fill(0.0);
+        self.motions.add_following(&self.change, rates);
+        Ok(true)
     }
 }
