@@ -176,3 +176,38 @@ fn integer(powers: &[f64]) -> Option<u32> {
     let all = powers.iter().all(|p| (p - least).abs() <= NEAR_INTEGER);
     (all && (1.0..64.0).contains(&least)).then_some(least as u32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tolerance::CLOSURE_RANK;
+
+    /// A point that is open has a residual of 1.
+    fn ray(points: &[(f64, bool)]) -> Ray {
+        let point = |&(distance, is_open)| RayPoint {
+            q: Vec::new(),
+            distance,
+            residual: if is_open { 1.0 } else { 0.0 },
+        };
+        Ray { points: points.iter().map(point).collect() }
+    }
+
+    /// What opens counts as far as all rays go, their end included.
+    #[test]
+    fn rays_open_where_all_of_them_still_go() {
+        let robot = crate::model::catalogue::load("four-bar").unwrap();
+        let (q, length) = (robot.home(), robot.reach());
+        let reduction = LyapunovSchmidt::of(&robot, q, length, CLOSURE_RANK).unwrap();
+        for (own, expected) in [
+            (&[(0.1, false), (0.2, true)][..], 0.05),
+            (&[(0.1, false), (0.12, true), (0.2, true)], 0.12),
+            (&[(0.1, false), (0.15, true)], 0.15),
+            (&[(0.1, false), (0.15, false)], 0.05),
+        ] {
+            let rays = vec![ray(own), ray(&[(0.05, false), (0.15, false)])];
+            let tracked = rays.iter().map(Ray::length).fold(TRACKED, f64::min);
+            let rays = Rays { rays, tracked, openness: 0.0, residual: 0.0, power: None };
+            assert_eq!(rays.open_distance(&reduction), expected, "{own:?}");
+        }
+    }
+}

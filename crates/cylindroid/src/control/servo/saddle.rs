@@ -315,4 +315,42 @@ mod tests {
         // The time in which 0.1 falls to `STUCK`.
         assert!((own - PATIENCE * 10.0_f64.ln()).abs() < 5e-3, "{own} s");
     }
+
+    /// The side on which a joint at 0 between these limits leaves a saddle, whose last velocity this was.
+    fn side([lower, upper]: [f64; 2], last: f64) -> f64 {
+        let mut saddle = Saddle::new(1);
+        saddle.free[(0, 0)] = 1.0;
+        saddle.eigen.decompose(&saddle.free);
+        let around = Surroundings {
+            columns: &[1.0],
+            limits: &[Limits { lower, upper, ..Limits::NONE }],
+            q: &[0.0],
+            bounds: &[VelocityBounds::NONE],
+            last: &[last],
+            gain: 1.0,
+            fastest: (f64::INFINITY, f64::INFINITY),
+        };
+        (saddle.side(&around) * saddle.eigen.v(0)[0]).signum()
+    }
+
+    /// The last motion, then the room to the limits, then the names of the joints choose a side.
+    #[test]
+    fn a_side_is_always_named() {
+        let endless = [-f64::INFINITY, f64::INFINITY];
+        for (limits, last, expected) in [
+            (endless, 0.1, 1.0),
+            (endless, -0.1, -1.0),
+            (endless, 0.0, 1.0),
+            ([-1.0, 1.0], 0.0, 1.0),
+            ([-1.0, 2.0], 0.0, 1.0),
+            ([-2.0, 1.0], 0.0, -1.0),
+            ([-2.0, 1.0], 0.1, 1.0),
+            ([-0.005, 1.0], -0.1, 1.0),
+            ([-1.0, 0.005], 0.1, -1.0),
+            ([-0.005, 0.005], -0.1, -1.0),
+            ([-0.005, 0.005], 0.1, 1.0),
+        ] {
+            assert_eq!(side(limits, last), expected, "{limits:?} {last}");
+        }
+    }
 }

@@ -281,6 +281,32 @@ fn gram_damping_meets_an_eigenvalue() {
     assert!(!hyperbolic(&j, 1.0, None, HyperbolicDamping::Gram { lambda: 1.0 }).exists);
 }
 
+/// A screw of the pitch h takes no part, however small mu is: what rounding leaves of its zero is not
+/// divided by mu^2. Beside it, an orthogonal screw of another pitch keeps its motion.
+#[test]
+fn invariant_damping_leaves_zeros_out() {
+    let mut random = Random(16);
+    for _ in 0..50 {
+        let (size, pose) = (10.0_f64.powf(random.within(-2.0, 2.0)), random.pose());
+        let h = size * [-3.0, -0.2, 0.3, 2.0][(random.next_u64() % 4) as usize];
+        let screw = |axis: Vec3, pitch: f64| Twist { linear: axis * pitch, angular: axis };
+        let placed = Pose { translation: pose.translation * size, ..pose };
+        let other = h + 0.7 * size;
+        let columns = [screw(Vec3::X, h), screw(Vec3::Y, other)].map(|s| placed.adjoint(s));
+        for (count, rates) in [(1, vec![0.0]), (2, vec![0.0, 1.0])] {
+            let j = matrix(&columns[..count]);
+            let damping = HyperbolicDamping::Invariant { mu: 1e-9 * size };
+            let found = hyperbolic(&j, h, None, damping).matrix;
+            let along = found.mul_vec(&columns[count - 1].to_array());
+            for (rate, expected) in along.iter().zip(&rates) {
+                assert!((rate - expected).abs() < 1e-9, "{size} {h} {count}: {along:?}");
+            }
+            let largest = found.as_slice().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            assert!(largest < 100.0 * (1.0 + 1.0 / size), "{size} {h} {count}: {largest}");
+        }
+    }
+}
+
 /// The invariant damping always exists, does not depend on the frame, and comes to J+h with the
 /// square of mu where that exists, else to a limit.
 #[test]

@@ -217,3 +217,82 @@ fn table_of_closed_chains_of_tasks_at_the_edge() {
         }
     }
 }
+
+/// How far the joints swing beyond a posture, alone and beside a task of the tool.
+#[test]
+#[ignore = "a table"]
+fn table_of_weak_postures() {
+    for name in ["panda", "iiwa14", "ur5e"] {
+        for acceleration in [0.5, 2.0, 10.0] {
+            let robot = weakened(name, acceleration);
+            let mut random = Random(5);
+            for beside in [false, true] {
+                for many in [false, true] {
+                    let (mut most, mut late) = (0.0_f64, 0);
+                    for _ in 0..10 {
+                        let start = within(&robot, &mut random);
+                        let end = within(&robot, &mut random);
+                        let pose = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
+                        let mut q = start.clone();
+                        let (mut least, mut rise) = (f64::INFINITY, 0.0_f64);
+                        let mut arrived = false;
+                        let mut note = |q: &[f64]| {
+                            let d: f64 = q.iter().zip(&end).map(|(a, b)| (a - b) * (a - b)).sum();
+                            let d = d.sqrt();
+                            least = least.min(d);
+                            rise = rise.max(d - least);
+                            arrived = d < 1e-2;
+                        };
+                        let objective = TaskObjective::Frame {
+                            end_effector: robot.tool().into(),
+                            components: Task::POSITION,
+                            target: pose.into(),
+                        };
+                        if many {
+                            let mut tasks = Vec::new();
+                            if beside {
+                                tasks.push(MotionTask::new("tool", objective));
+                            }
+                            let posture = TaskObjective::Posture { q: end.clone() };
+                            tasks.push(MotionTask {
+                                gain: 2.0,
+                                ..MotionTask::new("posture", posture)
+                            });
+                            let options =
+                                TaskServoOptions { dt: 1e-2, ..TaskServoOptions::new(&robot) };
+                            let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
+                            for _ in 0..2500 {
+                                servo.step(&q).unwrap();
+                                servo.advance(&mut q);
+                                note(&q);
+                            }
+                        } else if beside {
+                            let options = ServoOptions {
+                                dt: 1e-2,
+                                task: Task::POSITION,
+                                secondary: vec![SecondaryTask::Posture {
+                                    q: end.clone(),
+                                    gain: 2.0,
+                                }],
+                                ..ServoOptions::new(&robot)
+                            };
+                            let mut servo = Servo::new(&robot, options).unwrap();
+                            for _ in 0..2500 {
+                                servo.step(&q, pose).unwrap();
+                                servo.advance(&mut q);
+                                note(&q);
+                            }
+                        } else {
+                            continue;
+                        }
+                        most = most.max(rise);
+                        late += usize::from(!arrived);
+                    }
+                    println!(
+                        "{name} at {acceleration}, beside {beside}, many {many}: rise {most:.3} rad, {late} late"
+                    );
+                }
+            }
+        }
+    }
+}
