@@ -13,6 +13,7 @@
 //! Checked  tests/it/servo/steps.rs::weak_joints_arrive
 
 use super::stopping::{jerk_limited_stopping_velocity, stopping_distance_bound};
+use super::task_space::is_locked;
 use crate::inverse::Method;
 use crate::model::Limits;
 
@@ -32,6 +33,14 @@ pub(super) fn scale(
     joints.fold(1.0, |share, (((way, rate), scale), limit)| {
         f64::min(share, share_of((way * scale).abs(), (rate * scale).abs(), limit, dt))
     })
+}
+
+/// The share of a gain at which a joint stops at a goal that it is `way` off; locked joints never go.
+pub(in crate::control) fn share_of_gain(way: f64, gain: f64, limits: &Limits, dt: f64) -> f64 {
+    if is_locked(limits) {
+        return 1.0;
+    }
+    share_of(way.abs(), (gain * way).abs(), limits, dt)
 }
 
 /// The share of a velocity from which a joint stops within `way`.

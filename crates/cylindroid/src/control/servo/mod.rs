@@ -34,13 +34,14 @@ mod stopping;
 mod task_space;
 mod twist_step;
 
+pub(super) use approach::share_of_gain;
 pub(super) use edge::curvature_into;
 pub(super) use jerk_limited_stop::JerkLimitedStop;
 pub(super) use limits::{DefaultLimits, acceleration_of, limits_of_servo};
 pub(super) use loop_motions::{LoopMotions, nothing_actuated};
 pub(super) use plant::{Predictor, SimulatedRobot};
 pub(super) use saddle::{AT_REST, Progress, Saddle, Surroundings};
-pub(super) use secondary::{SecondaryVelocities, add_posture};
+pub(super) use secondary::{SecondaryVelocities, posture_ways};
 pub(super) use stall::{BrakingState, Remainder, StallDetector};
 pub(super) use stopping::{
     NEGLIGIBLE_WAY_BACK, SHARE_HALVINGS, jerk_limited_stopping_velocity, stopping_time,

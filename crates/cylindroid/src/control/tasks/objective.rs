@@ -13,7 +13,7 @@
 use std::fmt;
 
 use super::gradient::Gradient;
-use crate::control::servo::{SecondaryTask, SecondaryVelocities, Target, add_posture};
+use crate::control::servo::{SecondaryTask, SecondaryVelocities, Target, posture_ways};
 use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, MassMatrix, State};
 use crate::linalg::Matrix;
@@ -281,17 +281,24 @@ impl TaskObjective {
         }
     }
 
-    /// Adds desired joint velocities of the lowest level.
+    /// Adds desired joint velocities of the lowest level; `stops` is the share of a gain at which a joint
+    /// stops at a goal, of its way and the gain.
     pub(super) fn add_velocities(
         &self,
         state: &State,
         gradient: Option<&mut Gradient>,
         (gain, share): (f64, f64),
+        stops: impl Fn(usize, f64, f64) -> f64,
         out: &mut [f64],
     ) {
         match (self, gradient) {
             (Self::Posture { q }, _) => {
-                add_posture(state.mechanism(), state.q(), q, share * gain, out);
+                let ways = |each: &mut dyn FnMut(usize, f64)| {
+                    posture_ways(state.mechanism(), state.q(), q, each);
+                };
+                let mut slowed = 1.0_f64;
+                ways(&mut |i, way| slowed = slowed.min(stops(i, way, gain)));
+                ways(&mut |i, way| out[i] += slowed * (share * gain) * way);
             }
             (Self::JointVelocities { velocities }, _) => {
                 out.iter_mut().zip(velocities).for_each(|(o, v)| *o += share * v);
@@ -316,7 +323,9 @@ impl TaskObjective {
     ) -> bool {
         out.fill(0.0);
         match (self, gradient) {
-            (Self::Posture { q }, _) => add_posture(state.mechanism(), state.q(), q, 1.0, out),
+            (Self::Posture { q }, _) => {
+                posture_ways(state.mechanism(), state.q(), q, |i, way| out[i] = way);
+            }
             (Self::JointVelocities { velocities }, _) => {
                 let parts = out.iter_mut().zip(velocities.iter().zip(rates));
                 parts.for_each(|(o, (desired, rate))| *o = desired - rate);

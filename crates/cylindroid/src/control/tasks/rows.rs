@@ -9,7 +9,7 @@
 use super::motions::JerkBounds;
 use super::options::{MOST_PAIRS, MotionTask};
 use super::task_servo::TaskServo;
-use crate::control::servo::{JointState, jerk_limited_stopping_velocity};
+use crate::control::servo::{JointState, jerk_limited_stopping_velocity, share_of_gain};
 use crate::error::Result;
 use crate::model::{Coordinate, Limits};
 
@@ -163,10 +163,14 @@ impl TaskServo {
         self.lowest_velocities.fill(0.0);
         let lowest = |task: &MotionTask| task.objective.is_of_lowest_level();
         let sum: f64 = self.tasks.iter().filter(|t| lowest(t)).map(|task| task.weight).sum();
+        let (motions, limits, dt) = (&self.motions, &self.limits, self.options.dt);
+        let stops = |i: usize, way: f64, gain: f64| {
+            if motions.is_driven(i) { share_of_gain(way, gain, &limits[i], dt) } else { 1.0 }
+        };
         let all = self.tasks.iter().zip(&mut self.gradients);
         for (task, gradient) in all.filter(|(task, _)| lowest(task)) {
             let (share, out) = ((task.gain, task.weight / sum), &mut self.lowest_velocities);
-            task.objective.add_velocities(&self.state, gradient.as_mut(), share, out);
+            task.objective.add_velocities(&self.state, gradient.as_mut(), share, stops, out);
         }
         self.motions.unknowns_of(&self.lowest_velocities, &mut self.desired);
     }

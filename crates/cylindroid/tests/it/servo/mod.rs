@@ -34,6 +34,7 @@ mod task_reports;
 mod task_twist;
 mod tasks;
 mod twist;
+mod weak_postures;
 
 pub(crate) use tasks::two_armed;
 

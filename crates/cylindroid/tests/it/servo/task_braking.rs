@@ -184,115 +184,59 @@ fn twists_outwards_end_at_the_edge() {
     }
 }
 
-/// Closed chains do not look ahead: how far they swing at the edge of their workspace.
+/// How far the tool of a closed chain moves back on its way to a target beyond reach, of its reach, and
+/// when it is named as stalled (s).
+fn back_of_closed_chain(name: &str, acceleration: f64, direction: Vec3) -> [f64; 2] {
+    let robot = weakened(name, acceleration);
+    let mut q = cylindroid::closure::assemble(&robot, robot.home(), &[]).unwrap().q;
+    let home = robot.state(&q).unwrap().pose(robot.tool()).unwrap();
+    let target = Pose { translation: home.translation + direction * (2.0 * robot.reach()), ..home };
+    let objective = TaskObjective::Frame {
+        end_effector: robot.tool().into(),
+        components: Task::POSITION,
+        target: target.into(),
+    };
+    let options = TaskServoOptions { dt: 1e-2, ..TaskServoOptions::new(&robot) };
+    let tasks = vec![MotionTask::new("tool", objective)];
+    let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
+    let (mut least, mut back, mut named) = (f64::INFINITY, 0.0_f64, f64::INFINITY);
+    for i in 0..2000 {
+        let status = servo.step(&q).unwrap();
+        servo.advance(&mut q);
+        let error = servo.reports()[0].position_error;
+        least = least.min(error);
+        back = back.max((error - least) / robot.reach());
+        if status == Status::Stalled {
+            named = named.min(i as f64 * servo.dt());
+        } else {
+            named = f64::INFINITY;
+        }
+    }
+    [back, named]
+}
+
+/// Drives of closed chains stop at the edge of the workspace. They moved back by 0.05 of reach.
 #[test]
-#[ignore = "a table"]
-fn table_of_closed_chains_of_tasks_at_the_edge() {
+fn closed_chains_rest_at_the_edge() {
     for name in ["five-bar", "3rrr", "delta", "stewart"] {
-        for acceleration in [0.5, 5.0, 40.0] {
-            let robot = weakened(name, acceleration);
-            let start = cylindroid::closure::assemble(&robot, robot.home(), &[]).unwrap().q;
-            let home = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
-            let mut worst = 0.0_f64;
-            for direction in [Vec3::X, Vec3::Y, -Vec3::Y] {
-                let target = home.translation + direction * (2.0 * robot.reach());
-                let objective = TaskObjective::Frame {
-                    end_effector: robot.tool().into(),
-                    components: Task::POSITION,
-                    target: Pose { translation: target, ..home }.into(),
-                };
-                let options = TaskServoOptions { dt: 1e-2, ..TaskServoOptions::new(&robot) };
-                let tasks = vec![MotionTask::new("tool", objective)];
-                let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
-                let (mut q, mut least) = (start.clone(), f64::INFINITY);
-                for _ in 0..3000 {
-                    servo.step(&q).unwrap();
-                    servo.advance(&mut q);
-                    let error = servo.reports()[0].position_error;
-                    least = least.min(error);
-                    worst = worst.max((error - least) / robot.reach());
-                }
-            }
-            println!("{name} at {acceleration}: back by {worst:.4} of reach");
+        for acceleration in [0.5, 5.0] {
+            let [back, named] = back_of_closed_chain(name, acceleration, Vec3::X);
+            assert!(back < 2e-3 && named < 20.0, "{name} {acceleration}: {back:.4}, {named} s");
         }
     }
 }
 
-/// How far the joints swing beyond a posture, alone and beside a task of the tool.
 #[test]
 #[ignore = "a table"]
-fn table_of_weak_postures() {
-    for name in ["panda", "iiwa14", "ur5e"] {
-        for acceleration in [0.5, 2.0, 10.0] {
-            let robot = weakened(name, acceleration);
-            let mut random = Random(5);
-            for beside in [false, true] {
-                for many in [false, true] {
-                    let (mut most, mut late) = (0.0_f64, 0);
-                    for _ in 0..10 {
-                        let start = within(&robot, &mut random);
-                        let end = within(&robot, &mut random);
-                        let pose = robot.state(&start).unwrap().pose(robot.tool()).unwrap();
-                        let mut q = start.clone();
-                        let (mut least, mut rise) = (f64::INFINITY, 0.0_f64);
-                        let mut arrived = false;
-                        let mut note = |q: &[f64]| {
-                            let d: f64 = q.iter().zip(&end).map(|(a, b)| (a - b) * (a - b)).sum();
-                            let d = d.sqrt();
-                            least = least.min(d);
-                            rise = rise.max(d - least);
-                            arrived = d < 1e-2;
-                        };
-                        let objective = TaskObjective::Frame {
-                            end_effector: robot.tool().into(),
-                            components: Task::POSITION,
-                            target: pose.into(),
-                        };
-                        if many {
-                            let mut tasks = Vec::new();
-                            if beside {
-                                tasks.push(MotionTask::new("tool", objective));
-                            }
-                            let posture = TaskObjective::Posture { q: end.clone() };
-                            tasks.push(MotionTask {
-                                gain: 2.0,
-                                ..MotionTask::new("posture", posture)
-                            });
-                            let options =
-                                TaskServoOptions { dt: 1e-2, ..TaskServoOptions::new(&robot) };
-                            let mut servo = TaskServo::new(&robot, tasks, options).unwrap();
-                            for _ in 0..2500 {
-                                servo.step(&q).unwrap();
-                                servo.advance(&mut q);
-                                note(&q);
-                            }
-                        } else if beside {
-                            let options = ServoOptions {
-                                dt: 1e-2,
-                                task: Task::POSITION,
-                                secondary: vec![SecondaryTask::Posture {
-                                    q: end.clone(),
-                                    gain: 2.0,
-                                }],
-                                ..ServoOptions::new(&robot)
-                            };
-                            let mut servo = Servo::new(&robot, options).unwrap();
-                            for _ in 0..2500 {
-                                servo.step(&q, pose).unwrap();
-                                servo.advance(&mut q);
-                                note(&q);
-                            }
-                        } else {
-                            continue;
-                        }
-                        most = most.max(rise);
-                        late += usize::from(!arrived);
-                    }
-                    println!(
-                        "{name} at {acceleration}, beside {beside}, many {many}: rise {most:.3} rad, {late} late"
-                    );
-                }
+fn table_of_closed_chains_of_tasks_at_the_edge() {
+    for name in ["five-bar", "3rrr", "delta", "stewart"] {
+        for acceleration in [0.5, 2.0, 5.0, 40.0] {
+            let (mut back, mut named) = (0.0_f64, 0.0_f64);
+            for direction in [Vec3::X, Vec3::Y, -Vec3::Y, -Vec3::X, Vec3::new(0.5, 0.4, 0.7)] {
+                let own = back_of_closed_chain(name, acceleration, direction);
+                (back, named) = (back.max(own[0]), named.max(own[1]));
             }
+            println!("{name} at {acceleration}: back by {back:.4} of reach, named after {named} s");
         }
     }
 }

@@ -230,6 +230,8 @@ impl Servo {
             svd: &self.svd,
             task: &self.space,
             hessian: &mut self.hessian,
+            limits: &self.limits,
+            dt: self.options.dt,
         };
         for secondary in &self.options.secondary {
             secondary.add_velocities(&mut context, &mut self.secondary[..self.chain.n()]);

@@ -77,6 +77,8 @@ impl SecondaryVelocities {
             svd: &self.svd,
             task: &self.space,
             hessian: &mut self.hessian,
+            limits: &[],
+            dt: 0.0,
         };
         secondary.add_velocities(&mut context, &mut self.own);
         for (velocity, &c) in self.own.iter().zip(self.chain.coordinates()) {

@@ -13,5 +13,5 @@ mod table;
 
 pub(super) use context::Context;
 pub(in crate::control) use gradient::SecondaryVelocities;
-pub(in crate::control) use posture::add_all as add_posture;
+pub(in crate::control) use posture::ways as posture_ways;
 pub use table::SecondaryTask;
