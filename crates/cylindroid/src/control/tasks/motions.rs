@@ -225,7 +225,7 @@ impl Motions {
         }
     }
 
-    /// True for a joint that the servo moves of itself.
+    /// True for a joint that the servo commands: neither locked in a tree nor passive in a closed chain.
     pub(super) fn is_driven(&self, i: usize) -> bool {
         match self {
             Self::Tree(columns) => columns[i] != 0.0,
