@@ -249,7 +249,7 @@ impl Servo {
         servo.generic_rank = if let Some(coupled) = &servo.coupled {
             if !servo.options.inertia_weights && !servo.has_turning_axes() {
                 let (chain, space) = (servo.chain.clone(), servo.space.clone());
-                let edge = LoopEdge::new(mechanism, coupled.loops().clone(), chain, space)?;
+                let edge = LoopEdge::new(mechanism, coupled.loops().loaded_copy()?, chain, space)?;
                 servo.loop_edge = Some(Box::new(edge));
             }
             servo.find_actuated_rank()?

@@ -86,12 +86,10 @@ impl LoopEdge {
     /// For a task of m components.
     pub(super) fn new(
         mechanism: &Mechanism,
-        mut loops: LoopMotions,
+        loops: LoopMotions,
         chain: Chain,
         space: TaskSpace,
     ) -> Result<Self> {
-        // A copy has no memory of its own before it is loaded once.
-        loops.set_closed(mechanism.home())?;
         let (n, rates, a, m) =
             (mechanism.n(), loops.velocities(), loops.actuated, space.rows.len());
         let motions = || Motions { all: Matrix::zeros(rates, a), reduced: Matrix::zeros(m, a) };

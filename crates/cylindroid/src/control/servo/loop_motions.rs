@@ -75,6 +75,14 @@ impl LoopMotions {
         })
     }
 
+    /// A copy for other configurations. It is loaded once: a clone alone has no memory of its own, and
+    /// its first step would allocate.
+    pub(in crate::control) fn loaded_copy(&self) -> Result<Self> {
+        let mut copy = self.clone();
+        copy.set_closed(self.mechanism.home())?;
+        Ok(copy)
+    }
+
     pub(super) fn mechanism(&self) -> &Mechanism {
         &self.mechanism
     }

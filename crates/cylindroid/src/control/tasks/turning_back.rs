@@ -90,8 +90,7 @@ impl TurningBack {
         }
         let (n, v, u) = (mechanism.n(), limits.len(), motions.unknowns());
         let needs_masses = tasks.iter().any(|task| task.objective.needs_masses());
-        let loops =
-            motions.loops().map(|motions| LoopsAhead::new(mechanism, motions)).transpose()?;
+        let loops = motions.loops().map(LoopsAhead::new).transpose()?;
         Ok(Some(Self {
             state: mechanism.state(mechanism.home())?,
             scratch: Scratch::new(mechanism, needs_masses),
@@ -119,15 +118,15 @@ impl TurningBack {
             if !loops.go_on(start, limits, (rates, time))? {
                 return Ok(false);
             }
-            q.copy_from_slice(loops.motions.q());
-        } else {
-            q.copy_from_slice(start.q());
-            start.mechanism().integrate_in_place(q, rates, time);
-            for (((q, rate), from), l) in q.iter_mut().zip(rates).zip(start.q()).zip(limits) {
-                let inside = clamp(*q, l.lower.min(*from), l.upper.max(*from));
-                if inside != *q {
-                    (*q, *rate) = (inside, 0.0);
-                }
+            self.state.set(loops.motions.q())?;
+            return Ok(true);
+        }
+        q.copy_from_slice(start.q());
+        start.mechanism().integrate_in_place(q, rates, time);
+        for (((q, rate), from), l) in q.iter_mut().zip(rates).zip(start.q()).zip(limits) {
+            let inside = clamp(*q, l.lower.min(*from), l.upper.max(*from));
+            if inside != *q {
+                (*q, *rate) = (inside, 0.0);
             }
         }
         self.state.set(&self.q)?;
@@ -136,12 +135,9 @@ impl TurningBack {
 }
 
 impl LoopsAhead {
-    fn new(mechanism: &Mechanism, motions: &LoopMotions) -> Result<Self> {
-        let v = motions.velocities();
-        let mut motions = motions.clone();
-        // A copy has no memory of its own before it is loaded once.
-        motions.set_closed(mechanism.home())?;
-        let are_actuated = motions.are_actuated();
+    fn new(motions: &LoopMotions) -> Result<Self> {
+        let (v, are_actuated) = (motions.velocities(), motions.are_actuated());
+        let motions = motions.loaded_copy()?;
         Ok(Self { motions, are_actuated, change: vec![0.0; v], moved: vec![0.0; v] })
     }
 

@@ -29,10 +29,14 @@ impl Watch {
     }
 }
 
-/// After 30 s of a servo of tasks, a posture with a gain of 2 the last of them.
-fn of_tasks(robot: &Mechanism, start: &[f64], mut tasks: Vec<MotionTask>, goal: &[f64]) -> Watch {
+/// After 30 s of a servo of tasks, a posture with this gain the last of them.
+fn of_tasks(
+    (robot, start): (&Mechanism, &[f64]),
+    mut tasks: Vec<MotionTask>,
+    (goal, gain): (&[f64], f64),
+) -> Watch {
     let posture = TaskObjective::Posture { q: goal.to_vec() };
-    tasks.push(MotionTask { gain: 2.0, ..MotionTask::new("posture", posture) });
+    tasks.push(MotionTask { gain, ..MotionTask::new("posture", posture) });
     let options = TaskServoOptions { dt: 1e-2, ..TaskServoOptions::new(robot) };
     let mut servo = TaskServo::new(robot, tasks, options).unwrap();
     let (mut q, mut watch) = (start.to_vec(), Watch::new(goal));
@@ -44,7 +48,7 @@ fn of_tasks(robot: &Mechanism, start: &[f64], mut tasks: Vec<MotionTask>, goal: 
     watch
 }
 
-/// Joints swung beyond a posture by 2 rad.
+/// With the gain alone joints swing beyond a posture by 0.7 rad and more.
 #[test]
 fn weak_joints_rest_at_a_posture() {
     for name in ["panda", "iiwa14", "ur5e"] {
@@ -53,8 +57,10 @@ fn weak_joints_rest_at_a_posture() {
             let mut random = Random(5);
             for _ in 0..4 {
                 let (start, goal) = (within(&robot, &mut random), within(&robot, &mut random));
-                let Watch { distance, rise, .. } = of_tasks(&robot, &start, Vec::new(), &goal);
+                let Watch { distance, rise, .. } =
+                    of_tasks((&robot, &start), Vec::new(), (&goal, 2.0));
                 let case = format!("{name} {acceleration}: {distance:.1e} off, rise {rise:.1e}");
+                println!("{case}");
                 assert!(distance < 1e-3 && rise < 1e-3, "{case}");
             }
         }
@@ -62,7 +68,7 @@ fn weak_joints_rest_at_a_posture() {
 }
 
 /// Beside a task they come as near as it lets them and stay there, in both servos, and towards the middle
-/// of their limits too. They swung by 1.2 rad.
+/// of their limits too.
 #[test]
 fn weak_joints_rest_beside_a_task() {
     for name in ["panda", "ur5e"] {
@@ -79,7 +85,11 @@ fn weak_joints_rest_beside_a_task() {
                         components: Task::POSITION,
                         target: pose.into(),
                     };
-                    of_tasks(&robot, &start, vec![MotionTask::new("tool", objective)], &goal)
+                    of_tasks(
+                        (&robot, &start),
+                        vec![MotionTask::new("tool", objective)],
+                        (&goal, 2.0),
+                    )
                 } else {
                     let secondary = if round % 3 == 1 {
                         SecondaryTask::Posture { q: goal.clone(), gain: 2.0 }
@@ -105,6 +115,7 @@ fn weak_joints_rest_beside_a_task() {
                 };
                 let Watch { distance, least, rise, .. } = watch;
                 let case = format!("{name} {acceleration} {round}: {distance}, rise {rise:.1e}");
+                println!("{case}");
                 assert!(rise < 0.02 && distance - least < 0.01, "{case}");
             }
         }
@@ -124,7 +135,7 @@ fn weak_drives_of_closed_chains_rest_at_a_posture() {
             Some(assemble(&robot, &goal, &drives).unwrap()).filter(|found| found.closed)
         };
         let goal = [0.5, -0.5, 0.25, -0.25].into_iter().find_map(ahead).unwrap();
-        let Watch { distance, rise, .. } = of_tasks(&robot, &start, Vec::new(), &goal.q);
+        let Watch { distance, rise, .. } = of_tasks((&robot, &start), Vec::new(), (&goal.q, 5.0));
         assert!(distance < 1e-3 && rise < 1e-3, "{name}: {distance:.1e} off, rise {rise:.1e}");
     }
 }
