@@ -20,10 +20,13 @@ struct View {
     size: f64,
     /// In another order: arms, tasks, half-spaces, obstacles.
     reordered: [bool; 4],
+    /// Of all joints [rad/s^2, a tenth in m/s^2].
+    acceleration: f64,
 }
 
 impl View {
-    const OWN: Self = Self { world: Pose::IDENTITY, size: 1.0, reordered: [false; 4] };
+    const OWN: Self =
+        Self { world: Pose::IDENTITY, size: 1.0, reordered: [false; 4], acceleration: 12.0 };
 
     fn point(&self, p: Vec3) -> Vec3 {
         self.world.rotation * (p * self.size) + self.world.translation
@@ -64,7 +67,7 @@ fn two_armed(view: View) -> Mechanism {
             lower: -2.6 * unit,
             upper: 2.6 * unit,
             velocity: 1.5 * unit,
-            acceleration: 12.0 * unit,
+            acceleration: view.acceleration * unit,
             ..Limits::NONE
         };
         builder.joint(joint);
@@ -221,13 +224,23 @@ fn differs(a: &[Vec<(String, f64)>], b: &[Vec<(String, f64)>]) -> f64 {
 
 #[test]
 fn scenes_of_trees_move_alike_in_every_view() {
+    move_alike(View::OWN);
+}
+
+/// Where the joints brake in time for their tasks.
+#[test]
+fn weak_joints_move_alike_in_every_view() {
+    move_alike(View { acceleration: 0.8, ..View::OWN });
+}
+
+fn move_alike(as_it_is: View) {
     let steps = 600;
-    let own = motion(View::OWN, steps);
+    let own = motion(as_it_is, steps);
     let travelled = differs(&own[..1], &own[own.len() - 1..]);
     assert!(travelled > 0.3, "{travelled}");
     let mut random = Random(7);
     for _ in 0..3 {
-        let view = View { world: random.pose(), ..View::OWN };
+        let view = View { world: random.pose(), ..as_it_is };
         let most = differs(&own, &motion(view, steps));
         let all = motion(view, steps);
         for k in 0..own.len() {
@@ -237,13 +250,13 @@ fn scenes_of_trees_move_alike_in_every_view() {
         assert!(most < 1e-6, "{view:?}: {most}");
     }
     for size in [1e-3, 40.0] {
-        let view = View { size, ..View::OWN };
+        let view = View { size, ..as_it_is };
         let most = differs(&own, &motion(view, steps));
         println!("scaled {most:.1e}");
         assert!(most < 1e-6, "{view:?}: {most}");
     }
     for i in 0..4 {
-        let mut view = View::OWN;
+        let mut view = as_it_is;
         view.reordered[i] = true;
         let most = differs(&own, &motion(view, steps));
         println!("reordered {i} {most:.1e}");
@@ -262,60 +275,78 @@ fn objects_of_closed_chains_move_alike_on_any_foundation() {
     ] {
         let robot = catalogue::load(name).unwrap();
         let planar = robot.dimension() == cylindroid::model::Dimension::Planar;
-        let drive = |robot: &Mechanism, foundation: Pose| {
-            let reference = robot.reference();
-            let mut q = assemble(robot, robot.home(), &[]).unwrap().q;
-            let before = robot.state(&q).unwrap().pose(reference).unwrap();
-            let target =
-                Pose { translation: before.translation + foundation.rotation * way, ..before };
-            let objective = TaskObjective::Frame {
-                end_effector: reference.into(),
-                components: if planar { Task::PLANAR } else { Task::POSE },
-                target: target.into(),
+        // With a wall, and with weak drives on their way, which brake in time.
+        for (acceleration, is_weak) in [(5.0, false), (0.5, true)] {
+            let drive = |robot: &Mechanism, foundation: Pose| {
+                let reference = robot.reference();
+                let mut q = assemble(robot, robot.home(), &[]).unwrap().q;
+                let before = robot.state(&q).unwrap().pose(reference).unwrap();
+                let target =
+                    Pose { translation: before.translation + foundation.rotation * way, ..before };
+                let objective = TaskObjective::Frame {
+                    end_effector: reference.into(),
+                    components: if planar { Task::PLANAR } else { Task::POSE },
+                    target: target.into(),
+                };
+                let mut options = TaskServoOptions::new(robot);
+                (options.dt, options.acceleration) = (2e-3, acceleration);
+                options.half_spaces = vec![HalfSpace {
+                    name: "wall".to_owned(),
+                    end_effector: reference.into(),
+                    point: before.translation
+                        + foundation.rotation * (way * if is_weak { 2.0 } else { 0.6 }),
+                    normal: foundation.rotation * -way,
+                }];
+                let mut servo =
+                    TaskServo::new(robot, vec![MotionTask::new("object", objective)], options)
+                        .unwrap();
+                let result =
+                    servo.simulate(&q, if is_weak { 1.2 } else { 3.0 }, |_, _, _| ()).unwrap();
+                q.copy_from_slice(&result.q);
+                let after = robot.state(&q).unwrap().pose(reference).unwrap().translation;
+                let way = foundation.rotation.inverse() * (after - before.translation);
+                (q, way)
             };
-            let mut options = TaskServoOptions::new(robot);
-            (options.dt, options.acceleration) = (2e-3, 5.0);
-            options.half_spaces = vec![HalfSpace {
-                name: "wall".to_owned(),
-                end_effector: reference.into(),
-                point: before.translation + foundation.rotation * (way * 0.6),
-                normal: foundation.rotation * -way,
-            }];
-            let mut servo =
-                TaskServo::new(robot, vec![MotionTask::new("object", objective)], options).unwrap();
-            let result = servo.simulate(&q, 3.0, |_, _, _| ()).unwrap();
-            q.copy_from_slice(&result.q);
-            let after = robot.state(&q).unwrap().pose(reference).unwrap().translation;
-            let way = foundation.rotation.inverse() * (after - before.translation);
-            (q, way)
-        };
-        let (q, own) = drive(&robot, Pose::IDENTITY);
-        assert!((own.dot(way) / way.dot(way) - 0.6).abs() < 0.02, "{name}: {own:?}");
-        for _ in 0..2 {
-            let foundation = if planar {
-                Pose {
-                    rotation: Rotation::exp(Vec3::Z * random.within(-3.0, 3.0)),
-                    translation: Vec3::new(random.within(-2.0, 2.0), random.within(-2.0, 2.0), 0.0),
-                }
-            } else {
-                random.pose()
-            };
-            let mut builder = Mechanism::builder("moved");
-            builder.dimension(robot.dimension());
-            let how = Inclusion {
-                name: "",
-                parent: "foundation",
-                parent_from_root: foundation,
-                free: false,
-                start: robot.home(),
-            };
-            builder.include(&robot, how).unwrap();
-            builder.reference(&robot.frame_of(robot.reference()).name);
-            let moved = builder.build().unwrap();
-            let (turned, way) = drive(&moved, foundation);
-            let most = q.iter().zip(&turned).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-            println!("{name}: {most:.1e} {:.1e}", (way - own).norm());
-            assert!(most < 1e-6 && (way - own).norm() < 1e-6, "{name}: {most}, {way:?} {own:?}");
+            let (q, own) = drive(&robot, Pose::IDENTITY);
+            let share = own.dot(way) / way.dot(way);
+            println!("{name} {acceleration}: {share:.3} of the way");
+            assert!(
+                if is_weak { share > 0.1 } else { (share - 0.6).abs() < 0.02 },
+                "{name}: {own:?}"
+            );
+            for _ in 0..2 {
+                let foundation = if planar {
+                    Pose {
+                        rotation: Rotation::exp(Vec3::Z * random.within(-3.0, 3.0)),
+                        translation: Vec3::new(
+                            random.within(-2.0, 2.0),
+                            random.within(-2.0, 2.0),
+                            0.0,
+                        ),
+                    }
+                } else {
+                    random.pose()
+                };
+                let mut builder = Mechanism::builder("moved");
+                builder.dimension(robot.dimension());
+                let how = Inclusion {
+                    name: "",
+                    parent: "foundation",
+                    parent_from_root: foundation,
+                    free: false,
+                    start: robot.home(),
+                };
+                builder.include(&robot, how).unwrap();
+                builder.reference(&robot.frame_of(robot.reference()).name);
+                let moved = builder.build().unwrap();
+                let (turned, way) = drive(&moved, foundation);
+                let most = q.iter().zip(&turned).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+                println!("{name}: {most:.1e} {:.1e}", (way - own).norm());
+                assert!(
+                    most < 1e-6 && (way - own).norm() < 1e-6,
+                    "{name}: {most}, {way:?} {own:?}"
+                );
+            }
         }
     }
 }
