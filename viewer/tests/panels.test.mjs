@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { browserOfFile, enter, moveTarget, openPanel, scene, until, untilReached } from "./lib.mjs";
+import { browserOfFile, drawn, enter, moveTarget, openPanel, scene, until, untilReached } from "./lib.mjs";
 
 const { visit } = browserOfFile();
 
@@ -22,36 +22,63 @@ async function holdFocus(page) {
   };
 }
 
+/**
+ * A server whose answers about mobility come late; counts them, and the most requests without an answer.
+ * @param {import("playwright-core").Page} page
+ */
+async function slowMobility(page) {
+  const counts = { most: 0, answers: 0 };
+  await page.routeWebSocket(/./, (socket) => {
+    const server = socket.connectToServer();
+    const open = new Set();
+    socket.onMessage((text) => {
+      const { type, name, id } = JSON.parse(String(text));
+      if (type === "report" && name === "mobility") counts.most = Math.max(counts.most, open.add(id).size);
+      server.send(text);
+    });
+    server.onMessage((text) => {
+      const { type, name, reply_to } = JSON.parse(String(text));
+      if (type !== "report" || name !== "mobility") return socket.send(text);
+      setTimeout(() => {
+        open.delete(reply_to);
+        counts.answers += 1;
+        socket.send(text);
+      }, 1500);
+    });
+  });
+  await page.reload();
+  await drawn(page);
+  return counts;
+}
+
 test("a report is asked for again only after its answer, and then for what has changed since", () =>
   visit(["panda"], async (page) => {
-    let [most, answers] = [0, 0];
-    await page.routeWebSocket(/./, (socket) => {
-      const server = socket.connectToServer();
-      const open = new Set();
-      socket.onMessage((text) => {
-        const { type, name, id } = JSON.parse(String(text));
-        if (type === "report" && name === "mobility") most = Math.max(most, open.add(id).size);
-        server.send(text);
-      });
-      // A slow server: the robot moves on before it answers.
-      server.onMessage((text) => {
-        const { type, name, reply_to } = JSON.parse(String(text));
-        if (type !== "report" || name !== "mobility") return socket.send(text);
-        setTimeout(() => {
-          open.delete(reply_to);
-          answers += 1;
-          socket.send(text);
-        }, 1500);
-      });
-    });
-    await page.reload();
+    const counts = await slowMobility(page);
     await openPanel(page, "mobility");
+    // The robot moves on before it answers.
     for (const by of [-0.03, -0.03]) await moveTarget(page, "z", by);
     await untilReached(page, await moveTarget(page, "z", -0.03));
     await page.locator('[data-panel="mobility"] dl').first().waitFor();
     await page.waitForTimeout(4000);
-    assert.equal(most, 1, "requests without an answer");
-    assert.ok(answers > 1, "asked for after the robot moved");
+    assert.equal(counts.most, 1, "requests without an answer");
+    assert.ok(counts.answers > 1, "asked for after the robot moved");
+  }));
+
+test("frames that are chosen faster than reports come are one request at a time; that of the last is shown", () =>
+  visit(["panda"], async (page) => {
+    const counts = await slowMobility(page);
+    const panel = await openPanel(page, "mobility");
+    await panel.locator("dl").first().waitFor();
+    const before = counts.answers;
+    for (const name of ["link5", "link4", "link3", "link2"]) {
+      await page.getByLabel("Frame", { exact: true }).selectOption(name);
+      await until(page, `scene.frame === "${name}"`);
+      await page.waitForTimeout(400);
+    }
+    assert.equal(counts.most, 1, "requests without an answer");
+    // Two joints carry link2.
+    await panel.locator("dt:text('controllable object motions') + dd:text-is('2')").waitFor();
+    assert.ok(counts.answers > before);
   }));
 
 test("answers that come after another frame was chosen are not shown", () =>

@@ -33,7 +33,8 @@ export function mobilityPanel(): Watch {
       const singularity = objectIn(report, "singularity");
       const distances = objectIn(singularity, "distances");
       const kinds = listIn(singularity, "kinds").map(String);
-      made.note(`${numberIn(report, "dof") ?? "–"} motions`);
+      const dof = numberIn(report, "dof");
+      made.note(dof === null ? "" : count(dof, "motion"));
       const known = DISTANCES.filter(([key]) => distances[key] !== undefined && distances[key] !== null);
       fill(
         made.body,

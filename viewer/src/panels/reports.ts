@@ -12,19 +12,23 @@ export type Watch = {
   fail: (sentence: string) => void;
 };
 
+type Request = { id: number; isOfThisScene: boolean };
+
 export class Reports {
   private readonly watches = new Map<ReportName, Watch & { stale: boolean }>();
   private readonly asked = new Map<number, ReportName>();
-  /** The request of each report that has no answer yet: the server refuses more than four at once. */
-  private readonly underWay = new Map<ReportName, number>();
+  /** The request of each report that has no answer yet, one at a time: the server refuses more than four. */
+  private readonly underWay = new Map<ReportName, Request>();
   private timer = 0;
   private q = "";
 
   constructor(private readonly session: Session) {
     session.on("scene", () => {
-      this.underWay.clear();
+      for (const request of this.underWay.values()) request.isOfThisScene = false;
       this.stale();
     });
+    // What was asked on another line is not answered on this one.
+    session.on("link", () => this.underWay.clear());
     session.on("state", (state) => {
       const q = state.q.join();
       if (q === this.q) return;
@@ -35,7 +39,7 @@ export class Reports {
     session.on("failure", ({ reply_to, message }) => {
       const name = typeof reply_to === "number" ? this.asked.get(reply_to) : undefined;
       if (!name) return;
-      if (this.underWay.get(name) === reply_to) this.watches.get(name)?.fail(message);
+      if (this.isAwaited(name, reply_to)) this.watches.get(name)?.fail(message);
       this.answered(name, reply_to);
     });
   }
@@ -73,20 +77,25 @@ export class Reports {
       if (id === null) return;
       watch.stale = false;
       this.asked.set(id, name);
-      this.underWay.set(name, id);
+      this.underWay.set(name, { id, isOfThisScene: true });
     }
   }
 
   private take(report: Report): void {
-    // An answer to a question from before this scene may be of another frame or model.
-    if (this.underWay.get(report.name) === report.reply_to) this.watches.get(report.name)?.show(report.report);
+    if (this.isAwaited(report.name, report.reply_to)) this.watches.get(report.name)?.show(report.report);
     if (typeof report.reply_to === "number") this.asked.delete(report.reply_to);
     this.answered(report.name, report.reply_to);
   }
 
+  /** An answer to a question from before this scene may be of another frame or model. */
+  private isAwaited(name: ReportName, id: unknown): boolean {
+    const request = this.underWay.get(name);
+    return request?.id === id && request?.isOfThisScene === true;
+  }
+
   /** What has changed since is asked for now. */
   private answered(name: ReportName, id: unknown): void {
-    if (this.underWay.get(name) !== id) return;
+    if (this.underWay.get(name)?.id !== id) return;
     this.underWay.delete(name);
     this.later();
   }
