@@ -243,7 +243,7 @@ impl Saddle {
                     let (forwards, backwards) = around.room(way);
                     step = if forwards > backwards { whole } else { -whole };
                 } else if step.abs() < DECISIVE * whole {
-                    step = self.side(around);
+                    step = whole.copysign(self.side(around));
                 }
                 step = step.signum() * step.abs().max(whole).min(QUADRATIC);
             }
@@ -316,21 +316,49 @@ mod tests {
         assert!((own - PATIENCE * 10.0_f64.ln()).abs() < 5e-3, "{own} s");
     }
 
-    /// The side on which a joint at 0 between these limits leaves a saddle, whose last velocity this was.
-    fn side([lower, upper]: [f64; 2], last: f64) -> f64 {
-        let mut saddle = Saddle::new(1);
-        saddle.free[(0, 0)] = 1.0;
-        saddle.eigen.decompose(&saddle.free);
+    /// What a saddle of two joints does, of which the first at 0 is between these limits and had this
+    /// velocity last.
+    fn with_two_joints<T>(
+        [lower, upper]: [f64; 2],
+        last: f64,
+        work: impl FnOnce(&mut Saddle, &Surroundings<'_>) -> T,
+    ) -> T {
         let around = Surroundings {
-            columns: &[1.0],
-            limits: &[Limits { lower, upper, ..Limits::NONE }],
-            q: &[0.0],
-            bounds: &[VelocityBounds::NONE],
-            last: &[last],
+            columns: &[1.0; 2],
+            limits: &[Limits { lower, upper, ..Limits::NONE }, Limits::NONE],
+            q: &[0.0; 2],
+            bounds: &[VelocityBounds::NONE; 2],
+            last: &[last, 0.0],
             gain: 1.0,
             fastest: (f64::INFINITY, f64::INFINITY),
         };
-        (saddle.side(&around) * saddle.eigen.v(0)[0]).signum()
+        work(&mut Saddle::new(2), &around)
+    }
+
+    /// The side on which the first joint leaves it.
+    fn side(limits: [f64; 2], last: f64) -> f64 {
+        with_two_joints(limits, last, |saddle, around| {
+            (saddle.free[(0, 0)], saddle.free[(1, 1)]) = (1.0, 2.0);
+            saddle.eigen.decompose(&saddle.free);
+            (saddle.side(around) * saddle.eigen.v(1)[0]).signum()
+        })
+    }
+
+    /// A gradient whose step is a thousandth of the way out names the side, a smaller one does not; a
+    /// longer step is taken.
+    #[test]
+    fn a_gradient_names_the_side() {
+        let size = 0.1;
+        let whole = size * 2.0_f64.sqrt();
+        for (share, expected) in [(3000.0, -3.0), (-3000.0, 3.0), (2.0, -1.0), (0.5, 1.0)] {
+            let rate = with_two_joints([-1.0, 2.0], 0.0, |saddle, around| {
+                (saddle.hessian[(0, 0)], saddle.hessian[(1, 1)]) = (-1.0, 1.0);
+                saddle.gradient[0] = -share * DECISIVE * whole;
+                assert!(saddle.leave(around, size, false));
+                saddle.rates[0]
+            });
+            assert!((rate - expected * whole).abs() < 1e-12, "{share}: {rate}");
+        }
     }
 
     /// The last motion, then the room to the limits, then the names of the joints choose a side.
