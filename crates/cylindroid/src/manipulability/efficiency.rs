@@ -328,3 +328,24 @@ fn without(mut a: Matrix, basis: &Matrix) -> Matrix {
     }
     a
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Weights from 1e-300 to 1e300 make columns of any length.
+    #[test]
+    fn a_basis_does_not_depend_on_the_lengths_of_the_columns() {
+        let unit = |sizes: [f64; 2]| {
+            let of = [[1.0, 2.0, 3.0], [-1.0, 0.5, 0.2]];
+            orthonormal(Matrix::from_fn(3, 2, |i, j| sizes[j] * of[j][i]))
+        };
+        let expected = unit([1.0, 1.0]);
+        for sizes in [[1e-200, 1.0], [1.0, 1e-200], [1e-300, 1e-300], [1e200, 1e-200]] {
+            let basis = unit(sizes);
+            for (a, b) in basis.as_slice().iter().zip(expected.as_slice()) {
+                assert!((a - b).abs() < 1e-14, "{sizes:?}: {basis:?}");
+            }
+        }
+    }
+}

@@ -100,6 +100,14 @@ fn segments_have_speeds_of_their_own() {
     let middle = motion.duration() * 0.5;
     assert!((most(&motion, middle - 4.0, middle + 4.0) - 0.1).abs() < 1e-9);
     assert!((most(&motion, 0.0, 2.0) - 0.5).abs() < 1e-9);
+    // On short ways too, on which the speed of the others is not reached.
+    let short: Vec<Pose> =
+        line.iter().map(|p| Pose::from_translation(p.translation * 0.05)).collect();
+    let motion = WaypointMove::with_speeds(&short, &[0.1, 0.5, 0.1], free).unwrap();
+    let [begin, end] = [0.25, 0.75].map(|share| share * motion.duration());
+    assert!(most(&motion, 0.0, begin) <= 0.1 * (1.0 + 1e-9), "{}", most(&motion, 0.0, begin));
+    assert!(most(&motion, end, motion.duration()) <= 0.1 * (1.0 + 1e-9));
+    assert!(most(&motion, begin, end) > 0.11, "{}", most(&motion, begin, end));
     // A turn in place has the angular speed of the bounds.
     let turned = Pose { rotation: Rotation::about_z(1.5), ..poses[0] };
     let [slow, fast] =
@@ -139,6 +147,11 @@ fn times_are_met() {
     assert!((line.at(1.0).0.translation - half).norm() < 1e-12);
     assert!((line.duration() - 2.0).abs() < 1e-12);
     check(&line, CartesianBounds { linear: free, angular: any });
+    // In the shortest time it accelerates on half of the way and brakes on the other; not in less.
+    let ends = [Pose::IDENTITY, Pose::from_translation(Vec3::X)];
+    let shortest = WaypointMove::timed(&ends, &[0.0, 2.0], BOUNDS).unwrap();
+    assert!((shortest.at(1.0).1.linear.norm() - 1.0).abs() < 1e-12);
+    assert!(WaypointMove::timed(&ends, &[0.0, 2.0 * (1.0 - 1e-6)], BOUNDS).is_err());
 }
 
 #[test]

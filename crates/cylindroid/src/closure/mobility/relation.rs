@@ -269,12 +269,8 @@ impl Relation {
             Matrix::from_fn(chosen.len(), columns, |i, j| object[(chosen[i], j)])
         };
         let others: Vec<usize> = (0..self.object()).filter(|i| !components.contains(i)).collect();
-        let permitted = if others.is_empty() || columns == 0 {
-            Matrix::identity(columns)
-        } else {
-            let blocked = rows(&others).transpose();
-            ColumnSpace::of(&blocked, Threshold::Absolute(self.tolerance)).complement()
-        };
+        let blocked = rows(&others).transpose();
+        let permitted = ColumnSpace::of(&blocked, Threshold::Absolute(self.tolerance)).complement();
         let joint =
             Matrix::from_fn(self.joints(), columns, |i, j| self.cs.x[(i, j)] * self.cs.cosines[j]);
         let span = Matrix::vstack(

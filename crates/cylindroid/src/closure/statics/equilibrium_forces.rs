@@ -82,3 +82,20 @@ impl EquilibriumForces {
         Some(Self { edges: edges.into_iter().map(|e| e.forces).collect(), cut: space.cut() })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding is measured by the sum of the forces, however small or large all of them are.
+    #[test]
+    fn forces_of_rounding_size_are_zero() {
+        for size in [1e-6, 1.0, 1e6] {
+            let edge = Edge::new([1.0, 3.0, 0.1 * EQUILIBRIUM].map(|f| size * f).to_vec());
+            assert_eq!((&edge.forces[2..], edge.pressing), (&[0.0][..], 0b011), "{size}");
+            assert!((edge.forces[0] - 0.25).abs() < 1e-9 && (edge.forces[1] - 0.75).abs() < 1e-9);
+            let small = Edge::new([1.0, 1.0, 10.0 * EQUILIBRIUM].map(|f| size * f).to_vec());
+            assert_eq!(small.pressing, 0b111, "{size}");
+        }
+    }
+}

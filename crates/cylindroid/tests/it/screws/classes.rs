@@ -443,3 +443,16 @@ fn residual_is_the_deviation_from_the_class() {
         assert!((s.residual() / (gap / 2.0_f64.sqrt()) - 1.0).abs() < 1e-6, "{}", s.residual());
     }
 }
+
+/// Two screws of one pitch and a translation across them: with an angular part of 5e-12, where the
+/// centre is free to lie 200 lengths away, the pitches differ there by more than the threshold.
+#[test]
+fn a_class_that_hangs_on_a_free_centre_is_flagged() {
+    let rotation = |angular: Vec3| Twist { linear: Vec3::ZERO, angular };
+    for (turn, flagged) in [(0.0, false), (1e-13, false), (5e-12, true)] {
+        let t = Twist { linear: Vec3::Z, angular: Vec3::Z * turn };
+        let twists = [rotation(Vec3::X), rotation(Vec3::Y), t];
+        let s = ScrewSystem::of(&twists, &ScrewOptions::default()).unwrap();
+        assert_eq!((s.class(), s.is_ambiguous()), (Class::IIB, flagged), "{turn}");
+    }
+}

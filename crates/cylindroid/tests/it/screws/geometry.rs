@@ -91,6 +91,13 @@ fn the_edge_of_the_numbers() {
     let screw = Screw::of(t).unwrap();
     assert!(screw.is_translation());
     assert_eq!(screw.twist().linear, t.linear);
+    // Of the axis and the pitch one alone is beyond it.
+    let (across, along) = (Vec3::new(1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0));
+    for linear in [across, along] {
+        let t = Twist { linear: linear * 1e308, angular: along * 0.4 };
+        let screw = Screw::of(t).unwrap();
+        assert!(screw.is_translation() && screw.axis.point == Vec3::ZERO, "{screw:?}");
+    }
 }
 
 /// What a common normal is, whatever computes it.

@@ -67,7 +67,15 @@ fn arms_that_can_do_all_keep_their_rates_without_damping() {
         let done = found.at_tool.achieved.unwrap();
         crate::support::assert_close(name, &done.to_array(), &ASKED.to_array(), 1e-9);
         let damped = Method::Damped { damping: 0.1 };
-        assert!(!asked(&choice(&robot, damped, TaskProjection::Orthogonal), &robot).invariant);
+        let damped = choice(&robot, damped, TaskProjection::Orthogonal);
+        let state = robot.state(&bent(&robot)).unwrap();
+        // However slow or fast it is.
+        for size in [1e-6, 1.0, 1e6] {
+            let compare = |choice: &InverseChoice| {
+                choice.at_two_points(&state, robot.tool().into(), ASKED * size, POINT).unwrap()
+            };
+            assert!(compare(&exact).invariant && !compare(&damped).invariant, "{name} {size}");
+        }
     }
 }
 

@@ -240,6 +240,10 @@ fn twists_out_of_the_task_are_not_followed() {
         let mut servo = servo(&robot, |o| o.dt = DT);
         let now = servo.step_twist(robot.home(), Some(linear(Vec3::Z))).unwrap();
         assert_eq!((now.status, now.desired), (TwistStatus::AtRest, Twist::ZERO), "{name}");
+        // However slow it is.
+        let command = |time: f64, _: &[f64]| Ok((time < 0.1).then_some(linear(Vec3::Z * 1e-3)));
+        let result = simulate_twist(&mut servo, robot.home(), 1.0, command, |_| ()).unwrap();
+        assert_eq!((result.reached, result.followed), (false, Some(0.0)), "{name}");
     }
 }
 
