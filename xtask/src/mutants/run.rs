@@ -1,10 +1,13 @@
-//! The tests that reach a mutant, the fastest first, until one of them fails.
+//! The tests that reach a mutant, the fastest first, until one of them fails; as many mutants at a
+//! time as there are processors.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
+use std::thread::{self, available_parallelism};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
@@ -52,24 +55,31 @@ impl<'a> Tests<'a> {
     fn new(copy: &Path, library: &'a Path, robots: &'a Path) -> Result<Self> {
         let mut tests = Self { programs: programs(copy)?, library, robots, all: Vec::new() };
         println!("built");
-        let notes = copy.join("reached");
+        let mut names = Vec::new();
         for program in 0..tests.programs.len() {
-            for name in tests.names(program)? {
-                fs::write(&notes, "")?;
-                let start = Instant::now();
-                let mut command = tests.command(program, &[&name]);
-                command.env("CYLINDROID_MUTANTS_REACHED", &notes);
-                if let Some(test) = first_failure(command, Duration::MAX)? {
-                    bail!("{test} fails without a mutant");
-                }
-                let seconds = start.elapsed().as_secs_f64();
-                let numbers = fs::read_to_string(&notes)?;
-                let reached = numbers.lines().map(str::parse).collect::<Result<_, _>>()?;
-                tests.all.push(Test { program, name, seconds, reached });
-            }
+            names.extend(tests.names(program)?.into_iter().map(|name| (program, name)));
         }
+        tests.all = in_parallel(names.len(), |i| {
+            let (program, name) = &names[i];
+            tests.alone(*program, name, &copy.join(format!("reached-{i}")))
+        })?;
         tests.all.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
         Ok(tests)
+    }
+
+    /// Runs a test without a mutant.
+    fn alone(&self, program: usize, name: &str, notes: &Path) -> Result<Test> {
+        fs::write(notes, "")?;
+        let start = Instant::now();
+        let mut command = self.command(program, &[name]);
+        command.env("CYLINDROID_MUTANTS_REACHED", notes);
+        if let Some(test) = first_failure(command, Duration::MAX)? {
+            bail!("{test} fails without a mutant");
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        let numbers = fs::read_to_string(notes)?;
+        let reached = numbers.lines().map(str::parse).collect::<Result<_, _>>()?;
+        Ok(Test { program, name: name.to_owned(), seconds, reached })
     }
 
     fn names(&self, program: usize) -> Result<Vec<String>> {
@@ -83,7 +93,8 @@ impl<'a> Tests<'a> {
 
     fn command(&self, program: usize, names: &[&str]) -> Command {
         let mut command = Command::new(&self.programs[program]);
-        command.arg("--exact").args(names).current_dir(self.library);
+        // The other mutants have the other processors.
+        command.args(["--exact", "--test-threads", "1"]).args(names).current_dir(self.library);
         command.env("CYLINDROID_TEST_ROBOTS", self.robots).env("RUST_BACKTRACE", "0");
         command
     }
@@ -167,27 +178,75 @@ pub(super) fn all(
     let seconds: f64 = tests.all.iter().map(|test| test.seconds).sum();
     println!("{} tests, one after the other, take {seconds:.0} s", tests.all.len());
     let start = Instant::now();
-    let mut report = Report { caught: 0, missed: Vec::new(), equivalent: 0 };
-    for &number in &in_turn(mutants.len()) {
+    let order = in_turn(mutants.len());
+    let verdicts = in_parallel(order.len(), |i| {
         if start.elapsed().as_secs_f64() > 60.0 * minutes {
-            break;
+            return Ok(Verdict::NotTried);
         }
+        let number = order[i];
         let mutant = &mutants[number];
         let place = format!("{}:{}: {} -> {}", mutant.file, mutant.line, mutant.old, mutant.new);
-        let reaching = tests.reaching(number).len();
-        match tests.failure(number)? {
+        Ok(match tests.failure(number)? {
             Some(test) => {
                 println!("caught  {place} ({test})");
-                report.caught += 1;
+                Verdict::Caught
             }
-            None if equivalent.contains(mutant) => report.equivalent += 1,
+            None if equivalent.contains(mutant) => Verdict::Equivalent,
             None => {
+                let reaching = tests.reaching(number).len();
                 println!("missed  {place} (by {reaching} tests that reach it)");
-                report.missed.push(mutant.clone());
+                Verdict::Missed
             }
+        })
+    })?;
+    let mut report = Report { caught: 0, missed: Vec::new(), equivalent: 0 };
+    for (verdict, &number) in verdicts.into_iter().zip(&order) {
+        match verdict {
+            Verdict::Caught => report.caught += 1,
+            Verdict::Missed => report.missed.push(mutants[number].clone()),
+            Verdict::Equivalent => report.equivalent += 1,
+            Verdict::NotTried => {}
         }
     }
     Ok(report)
+}
+
+enum Verdict {
+    Caught,
+    Missed,
+    Equivalent,
+    /// For want of time.
+    NotTried,
+}
+
+/// The results of `work` for all numbers below `n`, by as many threads as there are processors.
+///
+/// # Errors
+/// The first error of `work`, after which nothing more is begun.
+fn in_parallel<T: Send>(n: usize, work: impl Fn(usize) -> Result<T> + Sync) -> Result<Vec<T>> {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut own = Vec::new();
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            if i >= n {
+                return Ok(own);
+            }
+            let result = work(i).inspect_err(|_| next.store(n, Ordering::Relaxed))?;
+            own.push((i, result));
+        }
+    };
+    let threads = available_parallelism().map_or(1, usize::from).min(n);
+    let parts: Vec<Result<Vec<_>>> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
+        workers.into_iter().map(|worker| worker.join().expect("no thread panics")).collect()
+    });
+    let mut all = Vec::new();
+    for part in parts {
+        all.extend(part?);
+    }
+    all.sort_by_key(|(i, _)| *i);
+    Ok(all.into_iter().map(|(_, result)| result).collect())
 }
 
 /// All numbers below `n`, spread, so that the first ones are a sample of all files.
@@ -222,4 +281,23 @@ fn programs(copy: &Path) -> Result<Vec<PathBuf>> {
         found.push(if program.is_absolute() { program.to_owned() } else { copy.join(program) });
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use anyhow::bail;
+
+    use super::in_parallel;
+
+    #[test]
+    fn results_are_in_order_and_an_error_ends_the_work() {
+        assert_eq!(
+            in_parallel(50, |i| Ok(i * i)).unwrap(),
+            (0..50).map(|i| i * i).collect::<Vec<_>>()
+        );
+        assert_eq!(in_parallel(0, Ok).unwrap(), []);
+        let error =
+            in_parallel(9, |i| if i == 4 { bail!("the fifth") } else { Ok(i) }).unwrap_err();
+        assert_eq!(error.to_string(), "the fifth");
+    }
 }
