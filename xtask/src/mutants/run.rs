@@ -239,7 +239,8 @@ fn in_parallel<T: Send>(n: usize, work: impl Fn(usize) -> Result<T> + Sync) -> R
     let threads = available_parallelism().map_or(1, usize::from).min(n);
     let parts: Vec<Result<Vec<_>>> = thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
-        workers.into_iter().map(|worker| worker.join().expect("no thread panics")).collect()
+        let joined = workers.into_iter().map(|worker| worker.join());
+        joined.map(|part| part.unwrap_or_else(|_| bail!("a thread panicked"))).collect()
     });
     let mut all = Vec::new();
     for part in parts {

@@ -154,3 +154,31 @@ impl Escape {
         self.saddle.leave(&around, size, folds)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest joint velocity for a twist of size 3 and singular values of at most 2.
+    #[test]
+    fn escapes_are_as_fast_as_their_inverses_may_be() {
+        let j = Matrix::from_fn(2, 2, |i, k| if i == k { [2.0, 0.5][i] } else { 0.0 });
+        let svd = Svd::of(&j);
+        let fastest = |method: Method| {
+            let (bounds, last) = (&[][..], &[][..]);
+            Linearised { j: &j, svd: &svd, bounds, last, gain: 5.0, method, size: 3.0 }.fastest()
+        };
+        let all = f64::INFINITY;
+        for (method, (expected, each)) in [
+            (Method::Truncated { eps: 0.01 }, (3.0 / 0.02, all)),
+            (Method::Damped { damping: 0.05 }, (30.0, all)),
+            (Method::VariableDamping { onset: 0.01, damping: 0.05 }, (3.0 / 0.02, all)),
+            (Method::VariableDamping { onset: 0.5, damping: 0.05 }, (30.0, all)),
+            (Method::SelectivelyDamped { max_joint_velocity: 0.7 }, (all, 0.7)),
+        ] {
+            let found = fastest(method);
+            assert!((found.0 - expected).abs() < 1e-12 || found.0 == expected, "{method:?}");
+            assert_eq!(found.1, each, "{method:?}");
+        }
+    }
+}

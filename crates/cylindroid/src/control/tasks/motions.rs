@@ -322,3 +322,32 @@ fn weakest_share(map: &ActuationMap, moves: impl Fn(&[f64]) -> bool) -> Option<f
     let mut small = left.chain(weak).take_while(|(share, _)| *share < MIN_ACTUATED_SHARE);
     small.find(|(_, motion)| norm(motion) > 0.0 && moves(motion)).map(|(share, _)| share)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a row of lengths and one of angles, that feel the second and the third of three joints.
+    #[test]
+    fn a_task_moves_by_its_own_joints_alone() {
+        let mut jacobian = Matrix::zeros(2, 3);
+        (jacobian[(0, 1)], jacobian[(1, 2)]) = (0.5, 2.0);
+        let task = TaskRows {
+            measured_error: vec![0.0; 2],
+            error: vec![0.0; 2],
+            feed_forward: vec![0.0; 2],
+            jacobian,
+            is_length: vec![true, false],
+        };
+        for (rates, expected) in [
+            ([1.0, 0.0, 0.0], false),
+            ([0.0, 1.0, 0.0], true),
+            ([0.0, 0.0, -1.0], true),
+            ([0.0, 1e-6, 0.0], false),
+            ([0.0, 0.0, 1e-6], true),
+            ([f64::NAN, 0.0, 0.0], true),
+        ] {
+            assert_eq!(moves(&task, &rates, 1e4), expected, "{rates:?}");
+        }
+    }
+}
