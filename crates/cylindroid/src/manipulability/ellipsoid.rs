@@ -229,3 +229,26 @@ fn kernel(a: &Matrix, threshold: Threshold) -> Matrix {
     }
     ColumnSpace::of(&a.transpose(), threshold).complement()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In other units of the semi-axes, also of a component that moves by directions without an end.
+    #[test]
+    fn scaled_columns_do_not_depend_on_units() {
+        let endless = Matrix::from_fn(3, 1, |i, _| [0.0, 0.6, 0.8][i]);
+        let of = |unit: f64| {
+            let sizes = [[1.0, 0.0], [0.2, 2.0], [0.5, 0.0]];
+            Scaled::of(&Matrix::from_fn(3, 2, |i, j| unit * sizes[i][j]), &endless)
+        };
+        let expected = of(1.0);
+        for unit in [1e-9, 1e-3, 1e9] {
+            let scaled = of(unit);
+            for (a, b) in scaled.axes.as_slice().iter().zip(expected.axes.as_slice()) {
+                assert!((a - b).abs() < 1e-14, "{unit}: {:?}", scaled.axes);
+            }
+            assert!((scaled.factor / expected.factor / unit - 1.0).abs() < 1e-14, "{unit}");
+        }
+    }
+}
