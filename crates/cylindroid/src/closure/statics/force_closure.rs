@@ -397,4 +397,23 @@ mod tests {
             assert!(t.dot(n).abs() < 1e-15 && (t.norm() - 1.0).abs() < 1e-15, "{n:?}: {t:?}");
         }
     }
+
+    /// A contact of an object in the plane x-y lies in it, on neither side of it.
+    #[test]
+    fn contacts_out_of_the_plane_are_refused() {
+        let contact = |height: f64, lean: f64| FingerContact {
+            point: Vec3::new(0.1, 0.2, height),
+            normal: Vec3::new(0.8, (0.36 - lean * lean).sqrt(), lean),
+            friction: Friction::Hard { mu: 0.5 },
+            strength: 1.0,
+            curvature: ContactCurvature::default(),
+        };
+        let space = |planar| WrenchSpace { point: Vec3::ZERO, length: 1.0, planar };
+        assert!(contact(0.0, 0.0).check(space(true)).is_ok());
+        for (height, lean) in [(0.1, 0.0), (-0.1, 0.0), (0.0, 0.3), (0.0, -0.3)] {
+            let error = contact(height, lean).check(space(true)).unwrap_err().to_string();
+            assert!(error.contains("must lie in the plane z = 0"), "{error}");
+            assert!(contact(height, lean).check(space(false)).is_ok());
+        }
+    }
 }
