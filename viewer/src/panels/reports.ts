@@ -12,13 +12,13 @@ export type Watch = {
   fail: (sentence: string) => void;
 };
 
-type Request = { id: number; isOfThisScene: boolean };
+type Asked = { id: number; isOfThisScene: boolean };
 
 export class Reports {
   private readonly watches = new Map<ReportName, Watch & { stale: boolean }>();
   private readonly asked = new Map<number, ReportName>();
   /** The request of each report that has no answer yet, one at a time: the server refuses more than four. */
-  private readonly underWay = new Map<ReportName, Request>();
+  private readonly underWay = new Map<ReportName, Asked>();
   private timer = 0;
   private q = "";
 
@@ -90,7 +90,7 @@ export class Reports {
   /** An answer to a question from before this scene may be of another frame or model. */
   private isAwaited(name: ReportName, id: unknown): boolean {
     const request = this.underWay.get(name);
-    return request?.id === id && request?.isOfThisScene === true;
+    return request !== undefined && request.id === id && request.isOfThisScene;
   }
 
   /** What has changed since is asked for now. */

@@ -237,15 +237,14 @@ fn in_parallel<T: Send>(n: usize, work: impl Fn(usize) -> Result<T> + Sync) -> R
         }
     };
     let threads = available_parallelism().map_or(1, usize::from).min(n);
-    let parts: Vec<Result<Vec<_>>> = thread::scope(|scope| {
+    let parts: Result<Vec<Vec<_>>> = thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(worker)).collect();
         let joined = workers.into_iter().map(|worker| worker.join());
-        joined.map(|part| part.unwrap_or_else(|_| bail!("a thread panicked"))).collect()
+        joined
+            .map(|part| part.unwrap_or_else(|_| bail!("a thread that ran tests panicked")))
+            .collect()
     });
-    let mut all = Vec::new();
-    for part in parts {
-        all.extend(part?);
-    }
+    let mut all: Vec<_> = parts?.into_iter().flatten().collect();
     all.sort_by_key(|(i, _)| *i);
     Ok(all.into_iter().map(|(_, result)| result).collect())
 }

@@ -169,13 +169,22 @@ mod tests {
             Linearised { j: &j, svd: &svd, bounds, last, gain: 5.0, method, size: 3.0 }.fastest()
         };
         let all = f64::INFINITY;
-        for (method, (expected, each)) in [
+        let cases = [
             (Method::Truncated { eps: 0.01 }, (3.0 / 0.02, all)),
             (Method::Damped { damping: 0.05 }, (30.0, all)),
             (Method::VariableDamping { onset: 0.01, damping: 0.05 }, (3.0 / 0.02, all)),
             (Method::VariableDamping { onset: 0.5, damping: 0.05 }, (30.0, all)),
+            (
+                Method::NumericalFiltering { onset: 0.01, damping: 0.05, filter: 0.2 },
+                (3.0 / 0.02, all),
+            ),
+            (Method::SingularValueFiltering { shape: 10.0, floor: 0.1 }, (30.0, all)),
             (Method::SelectivelyDamped { max_joint_velocity: 0.7 }, (all, 0.7)),
-        ] {
+        ];
+        for method in Method::ALL {
+            assert!(cases.iter().any(|(of, _)| of.name() == method.name()), "{method:?}");
+        }
+        for (method, (expected, each)) in cases {
             let found = fastest(method);
             assert!((found.0 - expected).abs() < 1e-12 || found.0 == expected, "{method:?}");
             assert_eq!(found.1, each, "{method:?}");

@@ -445,14 +445,21 @@ fn residual_is_the_deviation_from_the_class() {
 }
 
 /// Two screws of one pitch and a translation across them: with an angular part of 5e-12, where the
-/// centre is free to lie 200 lengths away, the pitches differ there by more than the threshold.
+/// centre is free to lie 200 lengths away, the pitches differ there by more than the threshold; in
+/// any frame, order and size.
 #[test]
 fn a_class_that_hangs_on_a_free_centre_is_flagged() {
+    let mut random = Random(7);
     let rotation = |angular: Vec3| Twist { linear: Vec3::ZERO, angular };
     for (turn, flagged) in [(0.0, false), (1e-13, false), (5e-12, true)] {
         let t = Twist { linear: Vec3::Z, angular: Vec3::Z * turn };
-        let twists = [rotation(Vec3::X), rotation(Vec3::Y), t];
-        let s = ScrewSystem::of(&twists, &ScrewOptions::default()).unwrap();
-        assert_eq!((s.class(), s.is_ambiguous()), (Class::IIB, flagged), "{turn}");
+        let mut twists = [rotation(Vec3::X), rotation(Vec3::Y), t];
+        for size in [1.0, -1e-3, 1e3] {
+            let pose = Setting::PLAIN.pose(&mut random);
+            twists.rotate_left(1);
+            let moved = twists.map(|twist| pose.adjoint(twist * size));
+            let s = ScrewSystem::of(&moved, &ScrewOptions::default()).unwrap();
+            assert_eq!((s.class(), s.is_ambiguous()), (Class::IIB, flagged), "{turn} {pose:?}");
+        }
     }
 }

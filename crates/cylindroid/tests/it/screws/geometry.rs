@@ -97,6 +97,8 @@ fn the_edge_of_the_numbers() {
         let t = Twist { linear: linear * 1e308, angular: along * 0.4 };
         let screw = Screw::of(t).unwrap();
         assert!(screw.is_translation() && screw.axis.point == Vec3::ZERO, "{screw:?}");
+        let off = (screw.twist().linear - t.linear).norm();
+        assert!(off <= 1e-15 * t.linear.norm(), "{screw:?}");
     }
 }
 
