@@ -20,6 +20,7 @@ use super::options::CollisionOptions;
 use super::scene::{NearPair, Scene};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
+use crate::linalg::max_abs;
 use crate::model::{CoordinateKind, JointKind, Mechanism};
 use crate::scalar::{clamp, uniform};
 
@@ -163,7 +164,7 @@ fn descend(
             }
         }
         let square: f64 = row.iter().map(|x| x * x).sum();
-        let steepest = row.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let steepest = max_abs(&row);
         if !(steepest > 0.0) {
             break;
         }

@@ -16,6 +16,7 @@ use super::self_motion::Descent;
 use crate::collision::{CollisionModel, NearPair};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
+use crate::linalg::max_abs;
 use crate::model::Mechanism;
 
 /// Steps away from other bodies.
@@ -103,7 +104,7 @@ impl Avoidance {
             };
             let lacks = self.gap + BEYOND - closest.distance;
             let Some(rate) = rate.filter(|rate| *rate > 1e-6 * lacks) else { return Ok(false) };
-            let most = problem.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+            let most = max_abs(&problem.d);
             let share = (lacks / rate).min(LONGEST / most);
             problem.d.iter_mut().for_each(|d| *d *= share);
             problem.advance(q);

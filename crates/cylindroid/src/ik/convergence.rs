@@ -5,6 +5,7 @@
 //! Checked  tests/it/ik.rs, src/ik/levenberg_marquardt.rs (single against batched restarts)
 
 use super::options::IkOptions;
+use crate::error::all_finite;
 use crate::model::Mechanism;
 
 /// Ratio of the damping to the squared error [-].
@@ -37,7 +38,7 @@ pub(super) fn is_reached(errors: Errors, options: &IkOptions) -> bool {
 /// True for a configuration that may be a solution: all coordinates, also those that move no goal, are
 /// finite and within their limits. Trees and closed chains call nothing a success without it.
 pub(super) fn is_admissible(mechanism: &Mechanism, q: &[f64]) -> bool {
-    q.iter().all(|x| x.is_finite()) && mechanism.outside_limits(q).next().is_none()
+    all_finite(q) && mechanism.outside_limits(q).next().is_none()
 }
 
 #[cfg(test)]

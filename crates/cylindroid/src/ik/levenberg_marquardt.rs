@@ -21,7 +21,7 @@ use super::options::IkOptions;
 use super::parallel_restarts::{BatchedProblem, MAX_COORDINATES};
 use crate::error::{Error, Result};
 use crate::kinematics::{Chain, State};
-use crate::linalg::{Damped, DampedProblem};
+use crate::linalg::{Damped, DampedProblem, max_abs};
 use crate::model::{CoordinateKind, Mechanism, NodeKind};
 use crate::scalar::{clamp, nearest_turn};
 use crate::task::HalfSpace;
@@ -226,7 +226,7 @@ impl Problem {
     }
 
     pub(super) fn advance(&mut self, q: &mut [f64]) {
-        let most = self.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        let most = max_abs(&self.d);
         let cut = if most > MAX_STEP { MAX_STEP / most } else { 1.0 };
         if self.simple {
             for (i, &c) in self.coordinates.iter().enumerate() {

@@ -11,7 +11,7 @@ use super::levenberg_marquardt::Problem;
 use super::reason::MissReason;
 use super::solution::{Candidate, FoundBy};
 use super::solve::{ITERATIONS_PER_RESTART, Solver};
-use crate::error::Result;
+use crate::error::{Result, all_finite};
 
 /// Iterations that refine the closest failure.
 const REFINEMENT_ITERATIONS: usize = 200;
@@ -105,7 +105,7 @@ impl Solver {
             relax(&mut self.problem);
             let (errors, _) = self.problem.run(&mut next, &self.options, ITERATIONS_PER_RESTART);
             restore(&mut self.problem);
-            let reached = is_reached(errors, &self.options) && next.iter().all(|x| x.is_finite());
+            let reached = is_reached(errors, &self.options) && all_finite(&next);
             reached.then_some(next)
         })
     }

@@ -16,7 +16,7 @@ use super::ascent::Ascent;
 use super::convergence::is_reached;
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
-use crate::linalg::{DampedProblem, dot};
+use crate::linalg::{DampedProblem, dot, max_abs};
 use crate::scalar::clamp;
 
 /// Largest number of steps.
@@ -151,7 +151,7 @@ impl Descent {
                     return;
                 }
             }
-            let most = problem.d.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+            let most = max_abs(&problem.d);
             share = share.min(LONGEST / most);
             self.last_d.copy_from_slice(&problem.d);
             for (last, &c) in self.last_q.iter_mut().zip(&problem.coordinates) {

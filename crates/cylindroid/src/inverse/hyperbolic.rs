@@ -316,8 +316,7 @@ fn damped(
     let h = h / system.length();
     let RowSpaceGram { svd, twists, eigen } = RowSpaceGram::of(j, &weights, system, h)?;
     // What rounding leaves of a zero would be divided by the square of a small mu.
-    let rounding =
-        tolerance::MACHINE_RANK * svd.values().next().unwrap_or(0.0).powi(2) * (1.0 + h.abs());
+    let rounding = tolerance::MACHINE_RANK * svd.largest().powi(2) * (1.0 + h.abs());
     let mut reason = None;
     let mut matrix = Matrix::zeros(j.cols(), 6);
     for (&g, vector) in eigen.values.iter().zip(&eigen.vectors).take(k) {

@@ -15,7 +15,7 @@
 //! Source   Buss & Kim 2005, eq. 13 to 15; rho_lj -> |J_j|
 //! Checked  tests/it/inverse.rs::selectively_damped_*
 
-use crate::linalg::{Svd, dot};
+use crate::linalg::{Svd, dot, max_abs};
 
 pub(super) fn gains(svd: &Svd, max_joint_velocity: f64, task: &[f64], out: &mut [f64]) -> f64 {
     let machine = svd.machine_rank();
@@ -50,7 +50,7 @@ fn direction_gain(svd: &Svd, i: usize, max_joint_velocity: f64, task: &[f64]) ->
         .sum::<f64>();
     let allowed = (1.0 / moved).min(1.0) * max_joint_velocity;
     // s times the largest rate along direction i
-    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs())) * along(svd, i, task).abs();
+    let largest = max_abs(v) * along(svd, i, task).abs();
     if largest > allowed * s { allowed / largest } else { 1.0 / s }
 }
 

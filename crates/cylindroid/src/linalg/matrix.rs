@@ -5,7 +5,8 @@
 use std::fmt;
 use std::ops::{Index, IndexMut, Mul};
 
-use super::vector::{dot, dot_unrolled};
+use super::vector::{dot, dot_unrolled, max_abs};
+use crate::error::all_finite;
 use crate::tolerance::SYMMETRIC;
 
 /// Squares of numbers between these neither overflow nor vanish, many of them together.
@@ -273,18 +274,7 @@ impl Matrix {
     /// The largest absolute entry (NaN if any entry is NaN).
     #[must_use]
     pub fn max_abs(&self) -> f64 {
-        // `f64::max` drops NaN, a comparison that fails keeps it.
-        // Bits of numbers without sign are in the order of the numbers, NaN last; four at a time,
-        // as none waits for the other.
-        let (fours, rest) = self.data.as_chunks::<4>();
-        let mut most = [0; 4];
-        for four in fours {
-            for l in 0..4 {
-                most[l] = most[l].max(four[l].abs().to_bits());
-            }
-        }
-        let rest = rest.iter().map(|x| x.abs().to_bits());
-        f64::from_bits(most.into_iter().chain(rest).max().unwrap_or(0))
+        max_abs(&self.data)
     }
 
     /// Largest absolute difference of two matrices of one shape (infinite for different shapes).
@@ -309,7 +299,7 @@ impl Matrix {
     /// True if no entry is NaN or infinite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        self.data.iter().all(|a| a.is_finite())
+        all_finite(&self.data)
     }
 }
 

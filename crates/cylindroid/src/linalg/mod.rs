@@ -42,4 +42,4 @@ pub use row_space::RowSpace;
 pub(crate) use svd::rank_threshold;
 pub use svd::{Rank, Svd};
 pub use symmetric_eigen::SymmetricEigen;
-pub(crate) use vector::{dot, norm};
+pub(crate) use vector::{dot, max_abs, norm};

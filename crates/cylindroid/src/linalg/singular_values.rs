@@ -20,6 +20,7 @@
 
 use super::matrix::Matrix;
 use super::vector::dot_unrolled as dot;
+use crate::error::all_finite;
 use crate::scalar::clamp;
 
 /// Maximum number of QR steps for each value; two or three are usual.
@@ -59,7 +60,7 @@ fn extreme_singular_values_within<const N: usize>(a: Matrix) -> Option<[f64; 2]>
     }
     let (mut d, mut e) = bidiagonal(a);
     d.iter_mut().chain(&mut e).for_each(|x| *x *= *x);
-    if !d.iter().chain(&e).all(|x| x.is_finite()) {
+    if !all_finite(&d) || !all_finite(&e) {
         return None;
     }
     // Gershgorin's bound for the largest value of B^T B.

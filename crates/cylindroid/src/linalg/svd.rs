@@ -186,6 +186,11 @@ impl Svd {
         self.rotations.lengths.column(0).iter().copied()
     }
 
+    /// The largest singular value: zero if there is none.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values().next().unwrap_or(0.0)
+    }
+
     /// Left singular vector of the `i`-th value (m entries).
     ///
     /// # Panics
@@ -295,7 +300,7 @@ impl Svd {
     pub fn residual(&self, a: &Matrix) -> f64 {
         let largest = a.max_abs();
         if largest == 0.0 {
-            return self.values().fold(0.0, f64::max);
+            return self.largest();
         }
         let (mut difference, mut size) = (0.0, 0.0);
         for i in 0..self.rows {

@@ -10,6 +10,23 @@ pub(crate) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The largest absolute number: NaN if any is NaN, zero if there is none.
+#[inline]
+pub(crate) fn max_abs(a: &[f64]) -> f64 {
+    // `f64::max` drops NaN, a comparison that fails keeps it.
+    // Bits of numbers without sign are in the order of the numbers, NaN last; four at a time,
+    // as none waits for the other.
+    let (fours, rest) = a.as_chunks::<4>();
+    let mut most = [0; 4];
+    for four in fours {
+        for l in 0..4 {
+            most[l] = most[l].max(four[l].abs().to_bits());
+        }
+    }
+    let rest = rest.iter().map(|x| x.abs().to_bits());
+    f64::from_bits(most.into_iter().chain(rest).max().unwrap_or(0))
+}
+
 /// `a . b` in four independent partial sums, which the processor vectorises.
 #[inline]
 pub(super) fn dot_unrolled(a: &[f64], b: &[f64]) -> f64 {

@@ -22,7 +22,7 @@
 use super::metrics::Metrics;
 use crate::closure::{Relation, RelationBases};
 use crate::error::Result;
-use crate::linalg::{CsDecomposition, Matrix, Metric, Qr, dot};
+use crate::linalg::{CsDecomposition, Matrix, Metric, Qr, dot, max_abs};
 use crate::tolerance::{DUALITY, MAX_EFFICIENCY_SPREAD, MAX_METRIC_CONDITION};
 
 /// A point (s : c) of the projective line, `s^2 + c^2 = 1`: output over input.
@@ -304,7 +304,7 @@ fn orthonormal(mut a: Matrix) -> Matrix {
     }
     for j in 0..a.cols() {
         let column = a.column_mut(j);
-        let size = column.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let size = max_abs(column);
         if size > 0.0 {
             column.iter_mut().for_each(|x| *x /= size);
         }

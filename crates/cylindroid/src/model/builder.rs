@@ -23,7 +23,7 @@ use super::mechanism::{Coordinate, Data, Frame, FrameId, Mechanism, frame_key};
 use super::report::LoadReport;
 use super::tool_choice::ToolChoice;
 use super::tree_order::TreeOrder;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::ZERO_AXIS;
 
@@ -339,7 +339,7 @@ impl Builder {
     fn home_of(&self, flat: &FlatMechanism) -> Result<Vec<f64>> {
         let n = flat.coordinates.len();
         if let Some(q) = &self.home {
-            if q.len() == n && q.iter().all(|x| x.is_finite()) {
+            if q.len() == n && all_finite(q) {
                 return Ok(q.clone());
             }
             return self.refuse(
@@ -355,7 +355,7 @@ impl Builder {
                 continue;
             };
             let range = flat.ranges.get(&j).cloned().unwrap_or(0..0);
-            if start.len() != range.len() || start.iter().any(|x| !x.is_finite()) {
+            if start.len() != range.len() || !all_finite(start) {
                 return self.refuse(
                     &spec.name,
                     format!(

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use crate::scalar::clamp;
 use crate::spatial::{Pose, Vec3};
+use crate::tolerance::LIMIT_MET;
 
 /// The kind of a joint, with its coordinates in order.
 ///
@@ -157,6 +158,12 @@ impl Limits {
         effort: f64::INFINITY,
     };
 
+    /// True if the position is outside the limits by more than rounding.
+    pub(crate) fn exclude(&self, position: f64) -> bool {
+        let beyond = (self.lower - position).max(position - self.upper);
+        beyond > LIMIT_MET * (1.0 + position.abs())
+    }
+
     /// True if some finite position is within the limits.
     pub(super) fn permit_a_position(&self) -> bool {
         self.lower <= self.upper && self.lower < f64::INFINITY && self.upper > f64::NEG_INFINITY
@@ -213,4 +220,25 @@ pub struct Joint {
     /// Inertia of its drive, reflected to the joint [kg m^2, or kg for a slide], for each of its
     /// coordinates: the mass matrix has it on its diagonal.
     pub armature: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_exclude_what_is_beyond_them_by_more_than_rounding() {
+        for (lower, upper) in [(-1.0, 2.0), (-300.0, -200.0), (200.0, 300.0), (-0.1, 0.1)] {
+            let limits = Limits { lower, upper, ..Limits::NONE };
+            for (end, outwards) in [(lower, -1.0), (upper, 1.0)] {
+                let rounding = LIMIT_MET * (1.0 + end.abs());
+                assert!(!limits.exclude(end), "{limits:?}");
+                assert!(!limits.exclude(end + outwards * 0.9 * rounding), "{limits:?}");
+                assert!(limits.exclude(end + outwards * 1.1 * rounding), "{limits:?}");
+                assert!(limits.exclude(end + outwards), "{limits:?}");
+            }
+            assert!(!limits.exclude(0.5 * (lower + upper)), "{limits:?}");
+        }
+        assert!(!Limits::NONE.exclude(1e300));
+    }
 }

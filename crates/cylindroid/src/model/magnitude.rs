@@ -2,7 +2,7 @@
 //!
 //! Checked  tests/formats/magnitudes.rs, tests/it/magnitudes.rs
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 use crate::spatial::Pose;
 use crate::tolerance::MAX_MAGNITUDE;
 
@@ -19,11 +19,7 @@ pub(crate) fn check(values: &[f64], name: impl Fn(usize) -> String) -> Result<()
 
 /// The end of a sentence about numbers of which one is not finite or out of range.
 pub(crate) fn fault(values: &[f64]) -> Option<String> {
-    if values.iter().all(|x| x.is_finite()) {
-        bound_fault(values)
-    } else {
-        Some("is not finite".into())
-    }
+    if all_finite(values) { bound_fault(values) } else { Some("is not finite".into()) }
 }
 
 /// The same where infinity means no limit.

@@ -14,7 +14,7 @@
 //! Checked  tests/it/screws/pitch_conics.rs
 
 use super::system::ScrewSystem;
-use crate::linalg::{SymmetricEigen, norm};
+use crate::linalg::{SymmetricEigen, max_abs, norm};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::SCREW_CLASS;
 
@@ -195,7 +195,7 @@ impl PitchConics {
     /// Eigenvalues and vectors of `K - h W` in units of the length, and how many are positive and
     /// negative.
     fn eigen(&self, h: f64) -> (SymmetricEigen<3>, [usize; 2]) {
-        let most = |m: &[[f64; 3]; 3]| m.iter().flatten().fold(0.0, |s: f64, x| s.max(x.abs()));
+        let most = |m: &[[f64; 3]; 3]| max_abs(m.as_flattened());
         let conic = self.conic(h);
         let eigen = SymmetricEigen::<3>::of(conic, 3);
         let size = if h.is_infinite() {

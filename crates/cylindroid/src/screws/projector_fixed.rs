@@ -66,3 +66,32 @@ pub(crate) fn independent_coordinates(
     }
     true
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is clear is answered here, and what is not, elsewhere.
+    #[test]
+    fn clear_cases_are_answered() {
+        let at = |rows: [[f64; 6]; 3]| Matrix::from_fn(6, 3, |i, j| rows[j][i]);
+        let scale = ScrewOptions::default();
+        let mut out = Matrix::zeros(3, 6);
+        let clear = at([
+            [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+            [0.5, 0.0, 0.2, 0.0, 1.0, 0.0],
+            [0.0, 1.0, 0.3, 0.6, 0.0, 0.8],
+        ]);
+        assert!(independent_coordinates(&clear, 0.3, &scale, &mut out));
+        let close = (&out * &clear).max_difference(&Matrix::identity(3));
+        assert!(close < 1e-14, "{close}");
+        let dependent = at([
+            [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+            [0.5, 0.0, 0.2, 0.0, 1.0, 0.0],
+            [0.5, 0.0, 0.2, 0.0, 1.0, 1.0 + 1e-9],
+        ]);
+        assert!(!independent_coordinates(&dependent, 0.3, &scale, &mut out));
+        let unknown = at([[f64::NAN; 6], [0.0; 6], [1.0; 6]]);
+        assert!(!independent_coordinates(&unknown, 0.3, &scale, &mut out));
+    }
+}

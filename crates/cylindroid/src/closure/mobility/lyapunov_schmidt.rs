@@ -193,7 +193,8 @@ impl<'a> LyapunovSchmidt<'a> {
             }
             last = error;
             let mut back = complement.solve(Matrix::from_fn(open.len(), 1, |i, _| -open[i]));
-            if !back.is_finite() || back.max_abs() > 1.0 {
+            // NaN is too far.
+            if !(back.max_abs() <= 1.0) {
                 return Ok(None);
             }
             q = self.moved(&q, &self.complement.mul_vec(back.column_mut(0)));

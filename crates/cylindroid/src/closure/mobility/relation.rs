@@ -18,7 +18,7 @@
 use crate::closure::constraint::velocity_constraint::check_finite;
 use crate::error::{Error, Result};
 use crate::linalg::{
-    ColumnSpace, CsDecomposition, Cut, Matrix, PairKind, Qr, Threshold, dot, solve_upper,
+    ColumnSpace, CsDecomposition, Cut, Matrix, PairKind, Qr, Threshold, dot, max_abs, solve_upper,
 };
 use crate::tolerance::CLOSURE_BLOCK;
 
@@ -210,7 +210,7 @@ impl Relation {
         let m = map.rows();
         let scaled = (map * &self.scale.twist).transpose();
         let rows = Matrix::from_fn(scaled.rows(), m, |i, j| {
-            let size = scaled.column(j).iter().fold(0.0, |s: f64, x| s.max(x.abs()));
+            let size = max_abs(scaled.column(j));
             if size > 0.0 { scaled[(i, j)] / size } else { 0.0 }
         });
         let rank = ColumnSpace::of(&rows, Threshold::Relative(CLOSURE_BLOCK)).rank();

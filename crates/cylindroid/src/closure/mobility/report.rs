@@ -344,7 +344,7 @@ fn joint_mobility(
     // The norm of a scalar's row, the largest singular value of a vector's rows.
     let norm = |of: &Matrix, rows: Range<usize>| match rows.len() {
         1 => of.row_norm(rows.start),
-        _ => Svd::of(&of.rows_between(rows.start, rows.end)).values().next().unwrap_or(0.0),
+        _ => Svd::of(&of.rows_between(rows.start, rows.end)).largest(),
     };
     (0..constraint.actuated() + constraint.passive())
         .map(|i| {

@@ -182,7 +182,6 @@ fn damped_step(
 /// The damped least-squares change of the coordinates of this Jacobian.
 fn damped_change(jacobian: &Matrix, residuals: &[f64], damping: f64) -> Vec<f64> {
     let svd = Svd::of(jacobian);
-    let l = damping * svd.values().next().unwrap_or(0.0);
-    let gain = |_, s| if s > 0.0 { -damp(s, l) } else { 0.0 };
-    svd.apply_gains(residuals, gain)
+    let l = damping * svd.largest();
+    svd.apply_gains(residuals, |_, s| -damp(s, l))
 }

@@ -19,7 +19,7 @@
 use super::coordinates::{largest_change, moved};
 use super::singular_curve::{CurvePoint, CurveTracer};
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd, dot, norm};
+use crate::linalg::{Matrix, Svd, dot, max_abs, norm};
 
 /// Maximum number of steps.
 const MAX_STEPS: usize = 200;
@@ -51,7 +51,7 @@ impl CentredNorm {
     }
 
     pub(crate) fn size(&self, offset: &[f64]) -> f64 {
-        if self.largest { offset.iter().fold(0.0, |a, x| a.max(x.abs())) } else { norm(offset) }
+        if self.largest { max_abs(offset) } else { norm(offset) }
     }
 }
 
@@ -91,7 +91,7 @@ impl CurveTracer {
                 }
                 share *= 0.5;
             }
-            let moved_by = share * y.iter().fold(0.0_f64, |a, y| a.max(y.abs()));
+            let moved_by = share * max_abs(&y);
             trust = if share < 1.0 { moved_by } else { 2.0 * moved_by };
             let Some((point, now)) = next else { break };
             (here, size) = (point, now);
@@ -164,7 +164,7 @@ impl TangentPlane {
             }
             (dot(&normal, &low) <= 0.0 && dot(&normal, &high) >= 0.0).then_some([low, high])
         };
-        let largest = e.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+        let largest = max_abs(e);
         let (mut below, mut above) = (0.0, largest);
         let mut best = vec![0.0; k];
         for _ in 0..60 {

@@ -13,10 +13,10 @@
 use super::coordinates::{largest_change, moved, within_limits};
 use super::loop_equations::LoopEquations;
 use super::signed_singularity::SignedSingularity;
-use crate::error::Result;
+use crate::error::{Result, all_finite};
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::Mechanism;
-use crate::tolerance::{CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING, PLATFORM_SINGULAR};
+use crate::tolerance::{CORRECTION_ROUNDING, LOOP_ROUNDING, PLATFORM_SINGULAR};
 
 /// Maximum number of corrector steps.
 const MAX_CORRECTIONS: usize = 20;
@@ -177,12 +177,9 @@ impl PlatformPath {
             return Ok(Err(Obstruction::Singular));
         }
         let beyond: Vec<usize> = self.mechanism.outside_limits(&there.q).collect();
-        for &i in &beyond {
-            let l = &self.mechanism.coordinates()[i].limits;
-            let (x, by) = (there.q[i], (l.lower - there.q[i]).max(there.q[i] - l.upper));
-            if by > LIMIT_MET * (1.0 + x.abs()) {
-                return Ok(Err(Obstruction::Limit(i)));
-            }
+        let coordinates = self.mechanism.coordinates();
+        if let Some(&i) = beyond.iter().find(|&&i| coordinates[i].limits.exclude(there.q[i])) {
+            return Ok(Err(Obstruction::Limit(i)));
         }
         if beyond.is_empty() {
             return Ok(Ok(there));
@@ -207,7 +204,7 @@ impl PlatformPath {
             let mut change = svd.solve(&self.equations.residuals, self.by_free.rank);
             change.iter_mut().for_each(|x| *x = -*x);
             let next = moved(&self.mechanism, &q, &self.by_free.columns, &change);
-            if next.iter().any(|x| !x.is_finite()) {
+            if !all_finite(&next) {
                 return Ok(None);
             }
             self.equations.set(&next)?;

@@ -21,13 +21,11 @@ use super::assembly::assemble;
 use super::coordinates::{columns, largest_change, moved, unit_of, within_limits};
 use super::initial_guesses::perturbed;
 use super::loop_closure::LoopClosure;
-use crate::error::Result;
+use crate::error::{Result, all_finite};
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, NodeKind};
 use crate::spatial::{Pose, Rotation, Vec3, log};
-use crate::tolerance::{
-    CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LIMIT_MET, LOOP_ROUNDING,
-};
+use crate::tolerance::{CLOSURE_RANK, CONTRADICTION, CORRECTION_ROUNDING, LOOP_ROUNDING};
 
 /// Maximum number of corrector steps: three are usual.
 const MAX_CORRECTIONS: usize = 12;
@@ -181,8 +179,8 @@ impl<'a> PathTracker<'a> {
         let (rows, columns) = (here.by_free.rows(), here.by_free.cols());
         let turned = Svd::of(&Matrix::from_fn(rows, columns, |i, j| {
             there.by_free[(i, j)] - here.by_free[(i, j)]
-        }));
-        let turned = turned.values().next().unwrap_or(0.0);
+        }))
+        .largest();
         if corrected > 0.5 * predicted + CORRECTION_ROUNDING
             || turned > 0.5 * (self.smallest(here) + self.smallest(&there))
         {
@@ -204,10 +202,8 @@ impl<'a> PathTracker<'a> {
 
     /// The first coordinate outside its limits by more than rounding.
     pub(crate) fn outside(&self, q: &[f64]) -> Option<usize> {
-        self.mechanism.outside_limits(q).find(|&i| {
-            let l = &self.mechanism.coordinates()[i].limits;
-            (l.lower - q[i]).max(q[i] - l.upper) > LIMIT_MET * (1.0 + q[i].abs())
-        })
+        let coordinates = self.mechanism.coordinates();
+        self.mechanism.outside_limits(q).find(|&i| coordinates[i].limits.exclude(q[i]))
     }
 
     /// Sets the prescribed coordinates at a fraction of the path; at its end exactly to the goal.
@@ -230,7 +226,7 @@ impl<'a> PathTracker<'a> {
             }
             let change = self.back(&now, &now.closure.residuals);
             let q = moved(self.mechanism, &now.closure.q, &self.free, &change);
-            if q.iter().any(|x| !x.is_finite()) {
+            if !all_finite(&q) {
                 return Ok(None);
             }
             let next = self.at(&q)?;

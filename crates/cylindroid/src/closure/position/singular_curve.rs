@@ -21,7 +21,7 @@ use super::configuration_signature::{Landmarks, link_poses};
 use super::coordinates::{columns, largest_change, moved};
 use super::loop_equations::LoopEquations;
 use super::signed_singularity::SignedSingularity;
-use crate::error::Result;
+use crate::error::{Result, all_finite};
 use crate::linalg::{Matrix, Svd, dot, norm};
 use crate::model::{CoordinateKind, Mechanism};
 use crate::scalar::clamp;
@@ -358,11 +358,9 @@ impl CurveTracer {
             Vanishing::Limit { coordinate, .. } => Some(coordinate),
             Vanishing::Singularity(_) => None,
         };
-        let beyond = mechanism.outside_limits(q).any(|i| {
-            let l = &mechanism.coordinates()[i].limits;
-            Some(i) != followed
-                && (l.lower - q[i]).max(q[i] - l.upper) > LIMIT_MET * (1.0 + q[i].abs())
-        });
+        let beyond = mechanism
+            .outside_limits(q)
+            .any(|i| Some(i) != followed && mechanism.coordinates()[i].limits.exclude(q[i]));
         if beyond {
             return Ok(false);
         }
@@ -424,7 +422,7 @@ impl CurveTracer {
             let factor = if size > STEPS.1 { -STEPS.1 / size } else { -1.0 };
             change.iter_mut().for_each(|x| *x *= factor);
             q = moved(self.equations.mechanism(), &q, &self.unknown, &change);
-            if q.iter().any(|x| !x.is_finite()) {
+            if !all_finite(&q) {
                 return Ok(None);
             }
         }

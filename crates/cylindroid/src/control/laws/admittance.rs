@@ -11,7 +11,7 @@
 
 use std::array::from_fn;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 use crate::linalg::SymmetricEigen;
 use crate::spatial::{Pose, Twist, Vec3, Wrench};
 use crate::tolerance::PASSIVE;
@@ -98,7 +98,7 @@ impl Admittance {
             if symmetric == 0.0 { 0.0 } else { symmetric / (root(i) * root(j)) }
         };
         let scaled: [[f64; 6]; 6] = from_fn(|i| from_fn(|j| entry(i, j)));
-        let smallest = if scaled.as_flattened().iter().all(|s| s.is_finite()) {
+        let smallest = if all_finite(scaled.as_flattened()) {
             SymmetricEigen::of(scaled, 6).values[5]
         } else {
             f64::NEG_INFINITY

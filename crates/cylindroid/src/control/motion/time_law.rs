@@ -15,7 +15,7 @@
 //!          T_a, T_v are tj, 2 tj + tc, tv
 //! Checked  tests/motion/laws.rs
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 
 /// Bounds of the absolute values of one coordinate's derivatives, in its unit u (m, rad or 1).
 ///
@@ -193,7 +193,7 @@ impl TimeLaw {
         let law = Self::from_times(distance, times, times.total());
         let KinematicBounds { velocity, acceleration, jerk } = law.peak;
         let numbers = [law.duration, velocity, acceleration, jerk];
-        if times.jerk + times.constant > 0.0 && numbers.iter().all(|x| x.is_finite()) {
+        if times.jerk + times.constant > 0.0 && all_finite(&numbers) {
             return Ok(law);
         }
         Err(Error::InvalidOption {

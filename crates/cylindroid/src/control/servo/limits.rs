@@ -152,16 +152,15 @@ impl VelocityBounds {
         if limits.jerk == f64::INFINITY || !desired.is_finite() {
             return self;
         }
-        let (gap, change) = (desired - now.velocity, limits.jerk * dt * dt);
+        let gap = desired - now.velocity;
         let end = now.velocity + (stopping_velocity(gap.abs(), limits.jerk, dt) * dt).copysign(gap);
-        let steady = now.velocity + now.acceleration * dt;
         if gap >= 0.0 {
-            let end = end.max(steady - change).max(self.lower);
+            let end = end.max(self.lower);
             if end < self.upper {
                 (self.upper, self.upper_cause) = (end, LimitKind::Jerk);
             }
         } else {
-            let end = end.min(steady + change).min(self.upper);
+            let end = end.min(self.upper);
             if end > self.lower {
                 (self.lower, self.lower_cause) = (end, LimitKind::Jerk);
             }

@@ -18,6 +18,7 @@
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_4;
 
+use crate::linalg::max_abs;
 use crate::scalar::{Bracket, atan2, sin_cos};
 use crate::spatial::Vec3;
 use crate::tolerance::{FREE_TURN, NEARLY_SATISFIED, TANGENT_ROOT};
@@ -337,7 +338,7 @@ impl Ellipse {
 /// Calls `f` with the real roots of `a[0] + a[1] t + ... + a[4] t^4`, and with extrema that are
 /// zero to rounding. The leading coefficient is non-zero.
 fn real_roots(a: [f64; 5], mut f: impl FnMut(f64)) {
-    let bound = 1.0 + a[..4].iter().fold(0.0, |m: f64, x| m.max((x / a[4]).abs()));
+    let bound = 1.0 + max_abs(&a[..4]) / a[4].abs();
     if !bound.is_finite() {
         return;
     }
@@ -421,6 +422,26 @@ mod tests {
         assert_eq!(none, 0);
         real_roots([f64::NAN, 0.0, 1.0, 0.0, 1.0], |_| none += 1);
         assert_eq!(none, 0);
+    }
+
+    /// The remainder at a double root is a rounding, compared with the size of the terms.
+    #[test]
+    fn double_roots_are_found_wherever_they_are() {
+        let mut state = 7_u64;
+        let mut random = || 6.0 * crate::scalar::uniform(&mut state) - 3.0;
+        for _ in 0..2000 {
+            // (t - r)^2 ((t - s)^2 + h^2)
+            let (r, s, h) = (random(), random(), 1.0 + random().abs());
+            let (double, rest) = ([r * r, -2.0 * r, 1.0], [s * s + h * h, -2.0 * s, 1.0]);
+            let mut p = [0.0; 5];
+            for (i, a) in double.iter().enumerate() {
+                rest.iter().enumerate().for_each(|(j, b)| p[i + j] += a * b);
+            }
+            let mut found = Vec::new();
+            real_roots(p, |t| found.push(t));
+            let near = found.iter().map(|t| (t - r).abs()).fold(1.0, f64::min);
+            assert!(near < 1e-5, "{r} in {found:?}, with {s} and {h}");
+        }
     }
 
     /// Free angles are reported, infeasible ones are not found.

@@ -11,7 +11,7 @@
 
 use crate::closure::{CentredNorm, Obstruction, PathNode, PlatformPath, SignedSingularity};
 use crate::error::Result;
-use crate::linalg::{Matrix, Svd};
+use crate::linalg::{Matrix, Svd, max_abs, norm};
 use crate::sweep::sobol::Sobol;
 
 /// First and shortest step, as shares of a ray.
@@ -190,11 +190,7 @@ impl Directions {
                 *second = size * turn.sin();
             }
         }
-        let size = if self.about_box {
-            x.iter().fold(0.0_f64, |a, x| a.max(x.abs()))
-        } else {
-            crate::linalg::norm(&x)
-        };
+        let size = if self.about_box { max_abs(&x) } else { norm(&x) };
         x.iter_mut().for_each(|x| *x /= size.max(f64::MIN_POSITIVE));
         x
     }

@@ -24,7 +24,7 @@ use super::super::source::{REACHED, Source};
 use super::super::table::{Column, ColumnKind, Values};
 use super::options::{DesignObjective, OptimisationOptions, Sense, Statistic};
 use crate::closure::ParametricModel;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, all_finite};
 use crate::kinematics::EndEffector;
 use crate::model::Mechanism;
 
@@ -188,7 +188,7 @@ impl Indices {
             Statistic::Largest => all.largest,
         };
         let found: Vec<f64> = gathered.iter().zip(&self.objectives).map(index).collect();
-        if found.iter().all(|x| x.is_finite()) {
+        if all_finite(&found) {
             return Ok(found);
         }
         if gathered.iter().any(|all| all.count == 0) {

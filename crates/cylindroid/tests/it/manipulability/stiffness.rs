@@ -3,7 +3,8 @@
 use cylindroid::closure::{ClosedChain, MotionSpace, joint_torques};
 use cylindroid::manipulability::Stiffness;
 use cylindroid::model::{
-    ElasticBody, ElasticKind, Elasticity, Inclusion, JointKind, JointSpec, Mechanism,
+    Dimension, ElasticBody, ElasticKind, Elasticity, Inclusion, JointKind, JointSpec,
+    LoopJointSpec, Mechanism,
 };
 use cylindroid::{Matrix, Pose, ReferenceFrame, Rotation, State, Twist, Vec3};
 
@@ -308,11 +309,11 @@ fn elastic_bearings_determine_hyperstatic_forces() {
     builder.joint(z("a", "ground", "crank", [0.0; 3]));
     builder.joint(z("b", "crank", "coupler", [0.0, 1.0, 0.0]));
     builder.joint(z("c", "coupler", "rocker", [2.0, 0.0, 0.0]));
-    builder.loop_joint(cylindroid::model::LoopJointSpec {
+    builder.loop_joint(LoopJointSpec {
         link_a_from_joint: Pose::from_translation(Vec3::new(0.0, -1.0, 0.0)),
         link_b_from_joint: Pose::from_translation(Vec3::new(2.0, 0.0, 0.0)),
         axis: Vec3::Z,
-        ..cylindroid::model::LoopJointSpec::new("d", JointKind::Revolute, "rocker", "ground")
+        ..LoopJointSpec::new("d", JointKind::Revolute, "rocker", "ground")
     });
     builder.frame("middle", "coupler", Pose::from_translation(Vec3::X)).tool("middle");
     let m = builder.build().unwrap();
@@ -444,4 +445,56 @@ fn faults_are_named() {
     twice.stiffness("leg1", 1.0);
     twice.elements.push(twice.elements[0].clone());
     assert!(refused(&twice).contains("two stiffnesses"));
+}
+
+/// A plate on three legs with sliders, whose hinges at the plate are the drives: K is the sum of
+/// `k_i J_i^T J_i` with the rates `J_i = w - n_i . (v + w x r_i) / l_i` of these hinges.
+#[test]
+fn drives_in_joints_that_close_loops() {
+    let feet = [[0.0, 0.0], [2.0, -0.3], [0.7, 1.9]];
+    let plate = [[0.6, 0.4], [1.3, 0.5], [0.8, 1.1]];
+    let stiffness = [300.0, 50.0, 120.0];
+    let mut builder = Mechanism::builder("plate");
+    builder.dimension(Dimension::Planar);
+    let joint = |name: String, kind, parent: &str, child: &str| JointSpec {
+        actuated: false,
+        ..JointSpec::new(&name, kind, parent, child)
+    };
+    builder.joint(joint("plate".to_owned(), JointKind::Planar, "ground", "plate"));
+    let mut elasticity = Elasticity::default();
+    let mut expected = Matrix::zeros(3, 3);
+    for (i, (foot, end)) in feet.into_iter().zip(plate).enumerate() {
+        let [x, y]: [f64; 2] = [end[0] - foot[0], end[1] - foot[1]];
+        let (length, angle) = (x.hypot(y), y.atan2(x));
+        let [barrel, rod] = ["barrel", "rod"].map(|name| format!("{name}{i}"));
+        builder.joint(JointSpec {
+            parent_from_joint: Pose {
+                rotation: Rotation::about_z(angle),
+                translation: Vec3::new(foot[0], foot[1], 0.0),
+            },
+            ..joint(format!("foot{i}"), JointKind::Revolute, "ground", &barrel)
+        });
+        builder.joint(JointSpec {
+            parent_from_joint: Pose::from_translation(Vec3::X * length),
+            axis: Vec3::X,
+            ..joint(format!("slider{i}"), JointKind::Prismatic, &barrel, &rod)
+        });
+        let hinge = format!("hinge{i}");
+        builder.loop_joint(LoopJointSpec {
+            link_b_from_joint: Pose::from_translation(Vec3::new(end[0], end[1], 0.0)),
+            actuated: true,
+            ..LoopJointSpec::new(&hinge, JointKind::Revolute, &rod, "plate")
+        });
+        elasticity.stiffness(&hinge, stiffness[i]);
+        // n = (-y, x) / l, w x r = w (-end_y, end_x)
+        let across = [-y / length, x / length];
+        let lever = across[1] * end[0] - across[0] * end[1];
+        let rate = [-across[0] / length, -across[1] / length, 1.0 - lever / length];
+        expected =
+            Matrix::from_fn(3, 3, |r, c| expected[(r, c)] + stiffness[i] * rate[r] * rate[c]);
+    }
+    builder.frame("tool", "plate", Pose::IDENTITY).tool("tool");
+    let m = builder.build().unwrap();
+    let found = Stiffness::of(&m.state(m.home()).unwrap(), None, None, &elasticity).unwrap();
+    close("stiffness", found.stiffness.as_ref().unwrap(), &expected, 1e-11);
 }

@@ -11,6 +11,7 @@
 //! Checked  src/control/solver/hierarchy/tests.rs::free_levels_are_those_of_the_active_set
 
 use super::{ActiveSet, DEPENDENT, Level, Use, Working};
+use crate::error::all_finite;
 
 /// Singular values below this share of the norm of the rows would cost the basis its orthogonality
 /// [-].
@@ -131,7 +132,7 @@ impl ActiveSet {
                 }
             }
             let Some((row, sign)) = worst.1 else {
-                return self.candidate.iter().all(|x| x.is_finite());
+                return all_finite(&self.candidate);
             };
             if !self.add(row, sign) {
                 return false;
