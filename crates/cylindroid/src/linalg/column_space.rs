@@ -132,7 +132,7 @@ impl ColumnSpace {
             && last * scale > absolute(first * scale)
         {
             let (first, kept, dropped) = (first * scale, last * scale, rest * scale);
-            let gap = if dropped == 0.0 { f64::INFINITY } else { kept / dropped };
+            let gap = kept / dropped; // what is kept is positive
             let rank = Rank { rank: regular, threshold: absolute(first), gap };
             let cut = Cut { rank, kept, dropped };
             return Self { rows, qr, svd: None, values: vec![first, kept], cut };

@@ -191,6 +191,14 @@ impl Svd {
         self.values().next().unwrap_or(0.0)
     }
 
+    /// The smallest singular value over the largest one [-]: zero if all are zero or there is none.
+    pub(crate) fn singular_ratio(&self) -> f64 {
+        match self.len().checked_sub(1) {
+            Some(last) if self.value(0) > 0.0 => self.value(last) / self.value(0),
+            _ => 0.0,
+        }
+    }
+
     /// Left singular vector of the `i`-th value (m entries).
     ///
     /// # Panics
@@ -330,4 +338,21 @@ fn size(a: &Matrix) -> f64 {
     }
     let sum = sums.iter().sum::<f64>() + rest.iter().map(|x| x.abs()).sum::<f64>();
     if sum == f64::INFINITY { a.max_abs() } else { sum }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_of_the_singular_values() {
+        let of = |m: &Matrix| {
+            let svd = Svd::of(m);
+            (svd.largest(), svd.singular_ratio())
+        };
+        assert_eq!(of(&Matrix::diagonal(&[2.0, -8.0, 4.0])), (8.0, 0.25));
+        assert_eq!(of(&Matrix::diagonal(&[3.0, 0.0])), (3.0, 0.0));
+        assert_eq!(of(&Matrix::zeros(2, 3)), (0.0, 0.0));
+        assert_eq!(of(&Matrix::zeros(0, 3)), (0.0, 0.0));
+    }
 }

@@ -244,3 +244,45 @@ fn scaled(k: &Matrix, scale: Scale) -> [[f64; 6]; 6] {
         std::array::from_fn(|j| units[i].iter().zip(&images[j]).map(|(a, b)| a * b).sum())
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::{Pose, Rotation};
+
+    /// Springs along lines: `points`, directions and stiffnesses of five, fewer than six, so that the
+    /// matrix is singular.
+    fn springs(placed: Pose, unit: f64) -> Matrix {
+        let springs = [
+            ([0.3, -0.2, 0.5], [1.0, 0.2, -0.4], 3.0),
+            ([-0.6, 0.1, 0.2], [0.1, -0.9, 0.5], 1.0),
+            ([0.2, 0.8, -0.3], [-0.3, 0.4, 1.2], 0.5),
+            ([0.9, -0.4, 0.1], [0.7, 0.7, 0.1], 2.0),
+            ([-0.1, 0.5, 0.7], [0.2, -0.5, -0.8], 4.0),
+        ];
+        let wrench = |point: [f64; 3], force: [f64; 3]| {
+            let force = placed.rotation * Vec3::from_array(force);
+            let moment = (placed * Vec3::from_array(point)).cross(force) * unit;
+            [force.to_array(), moment.to_array()].concat()
+        };
+        let wrenches = springs.map(|(point, force, k)| (wrench(point, force), k));
+        Matrix::from_fn(6, 6, |i, j| wrenches.iter().map(|(w, k)| k * w[i] * w[j]).sum())
+    }
+
+    #[test]
+    fn the_scale_moves_with_the_matrix() {
+        let Scale { center, length } = scale_of(&springs(Pose::IDENTITY, 1.0));
+        for (vector, unit) in [
+            (Vec3::new(0.0, 0.0, 1.3), 1.0),
+            (Vec3::new(2.0, -0.4, 0.7), 1.0),
+            (Vec3::new(0.3, 1.1, -0.9), 1e3),
+            (Vec3::new(-1.0, 0.2, 0.0), 1e-6),
+        ] {
+            let placed = Pose { rotation: Rotation::exp(vector), translation: vector };
+            let found = scale_of(&springs(placed, unit));
+            let apart = found.center * (1.0 / unit) - placed * center;
+            assert!(apart.norm() < 1e-12, "{apart:?}");
+            assert!((found.length / (unit * length) - 1.0).abs() < 1e-12, "{vector:?}, {unit}");
+        }
+    }
+}

@@ -267,10 +267,5 @@ pub(super) fn classify(e: &StallInputs<'_>) -> Stall {
     if rank >= e.generic_rank {
         return Stall::TooFewJoints { rank, task: e.error.len(), direction };
     }
-    let ratio = if e.svd.is_empty() || e.svd.value(0) == 0.0 {
-        0.0
-    } else {
-        e.svd.value(e.svd.len() - 1) / e.svd.value(0)
-    };
-    Stall::Singular { ratio, direction }
+    Stall::Singular { ratio: e.svd.singular_ratio(), direction }
 }

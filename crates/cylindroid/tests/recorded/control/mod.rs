@@ -3,6 +3,7 @@
 
 mod bounds;
 mod closed;
+mod edges;
 mod laws;
 mod motion;
 mod names;

@@ -113,7 +113,7 @@ fn of_reports(reports: &[TaskReport]) -> (String, [f64; 2]) {
     (words.join("."), [sum(&shares), sum(&errors)])
 }
 
-fn note(servo: &TaskServo, watch: &mut Watch, record: &mut Record) {
+pub(super) fn note(servo: &TaskServo, watch: &mut Watch, record: &mut Record) {
     let (word, [shares, errors]) = of_reports(servo.reports());
     let limits = of_limits(servo.active_limits());
     let near: Vec<f64> = servo.near().iter().map(|n| n.distance).collect();
@@ -137,7 +137,7 @@ fn servo_of(
 }
 
 /// Moves the targets of all tasks that have one.
-fn move_targets(servo: &mut TaskServo, way: Vec3, q: &[f64]) {
+pub(super) fn move_targets(servo: &mut TaskServo, way: Vec3, q: &[f64]) {
     for i in 0..servo.tasks().len() {
         match servo.objective_mut(&format!("{i}")).unwrap() {
             TaskObjective::Frame { target, .. } => target.pose.translation += way,

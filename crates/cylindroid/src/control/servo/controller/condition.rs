@@ -67,10 +67,7 @@ impl Servo {
                 twist
             }
         });
-        let singular_ratio = match weakest {
-            Some(_) => svd.value(svd.len() - 1) / svd.value(0),
-            None => 0.0,
-        };
+        let singular_ratio = svd.singular_ratio();
         Ok(ConditionReport {
             inverse: self.options.method.inverse(&self.task)?,
             singular_ratio,
@@ -179,8 +176,7 @@ impl Servo {
 
     /// Ratio of the smallest to the largest singular value.
     pub(super) fn singular_ratio(&self) -> f64 {
-        let largest = self.svd.value(0);
-        if largest == 0.0 { 0.0 } else { self.svd.value(self.svd.len() - 1) / largest }
+        self.svd.singular_ratio()
     }
 
     /// Distances prove nothing unless the task constrains the whole position.
