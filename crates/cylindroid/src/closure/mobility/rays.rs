@@ -182,6 +182,19 @@ mod tests {
     use super::*;
     use crate::tolerance::CLOSURE_RANK;
 
+    #[test]
+    fn powers_are_near_one_integer() {
+        assert_eq!(integer(&[2.0 + 0.5 * NEAR_INTEGER, 2.0 - 0.5 * NEAR_INTEGER]), Some(2));
+        for apart in [1.5 * NEAR_INTEGER, -1.5 * NEAR_INTEGER] {
+            assert_eq!(integer(&[2.0 + apart, 2.0 + apart]), None);
+            assert_eq!(integer(&[2.0, 2.0 + apart]), None);
+        }
+        assert_eq!(integer(&[0.0, 0.0]), None);
+        assert_eq!(integer(&[64.0]), None);
+        assert_eq!(integer(&[f64::NAN]), None);
+        assert_eq!(integer(&[]), None);
+    }
+
     /// A point that is open has a residual of 1.
     fn ray(points: &[(f64, bool)]) -> Ray {
         let point = |&(distance, is_open)| RayPoint {
