@@ -372,6 +372,33 @@ mod tests {
         toml::parse(&text.concat(), Path::new("parallelograms.toml")).unwrap()
     }
 
+    /// A wedge that is driven along x lifts a slider by its slope: of both, which are as long, the
+    /// wedge has the share 1 / sqrt(1 + slope^2).
+    #[test]
+    fn the_share_of_a_wedge_is_that_of_its_slope() {
+        for slope in [0.1, 0.5, 2.0] {
+            let joint = |name: &str, between: [&str; 2], axis: [f64; 2], actuated: bool| {
+                format!(
+                    "[[joint]]\nname = \"{name}\"\ntype = \"prismatic\"\nbetween = {between:?}\n\
+                     axis = {axis:?}\nactuated = {actuated}\n"
+                )
+            };
+            let text = [
+                "name = \"wedge\"\ndimension = 2\nreference = \"lift\"\n".to_owned(),
+                joint("drive", ["ground", "wedge"], [1.0, 0.0], true),
+                joint("guide", ["ground", "lift"], [0.0, 1.0], false),
+                joint("slope", ["wedge", "lift"], [1.0, -slope], false),
+            ];
+            let wedge = toml::parse(&text.concat(), Path::new("wedge.toml")).unwrap();
+            let mut partitioning = CoordinatePartitioning::new(&wedge, &[]).unwrap();
+            partitioning.load(wedge.home()).unwrap();
+            assert!(partitioning.solve(&[]), "{slope}");
+            let expected = 1.0 / slope.hypot(1.0);
+            let found = partitioning.least_share();
+            assert!((found - expected).abs() < 1e-12, "{slope}: {found}");
+        }
+    }
+
     /// Loops that share no joint are solved by themselves, the joints of none besides.
     #[test]
     fn loops_that_share_no_joint_are_apart() {

@@ -365,6 +365,21 @@ mod tests {
         assert!(limits.upper - now.position < 1e-9, "stops short: {}", now.position);
     }
 
+    /// A push in either direction is no acceleration of the joint's own.
+    #[test]
+    fn changes_beyond_the_limits_are_no_acceleration() {
+        let (limits, dt) = (Limits { jerk: 1e3, ..limits() }, 1e-2);
+        for sign in [-1.0, 1.0] {
+            let of = |before: f64, now: f64| {
+                sign * acceleration_of(&limits, sign * before, sign * now * dt, dt)
+            };
+            assert_eq!(of(2.0, 5.0), 5.0);
+            assert_eq!(of(5.0, -4.0), -4.0);
+            assert_eq!(of(5.0, 11.0), 0.0); // acceleration
+            assert_eq!(of(-2.0, 9.0), 0.0); // jerk
+        }
+    }
+
     /// A velocity accepted by the margin meets no bound, and few that meet none are rejected.
     #[test]
     fn velocities_within_the_margin_meet_no_bound() {
