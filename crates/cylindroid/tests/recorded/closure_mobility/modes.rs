@@ -59,7 +59,7 @@ fn views(file: &str, names: &[&str], cases: u64) {
 
 #[test]
 fn linkages() {
-    views("mobility_modes_of_linkages", &LINKAGES, 30);
+    views("mobility_modes_of_linkages", &LINKAGES, 60);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn robots() {
 
 #[test]
 fn random_chains() {
-    check("mobility_modes_of_random_chains", 24, |random, record| {
+    check("mobility_modes_of_random_chains", 60, |random, record| {
         let m = if random.once_in(2) { aligned(random) } else { platform(random) };
         search(random, record, &m);
     });

@@ -67,7 +67,7 @@ fn map_of(random: &mut Random<'_>, record: &mut Record, mechanism: &Mechanism, a
 
 #[test]
 fn maps_of_five_bars() {
-    check("position_maps_five_bars", 5, |random, record| {
+    check("position_maps_five_bars", 14, |random, record| {
         let mechanism = five_bar(random);
         let axes = axes(random, &mechanism, &["x", "y"], 5);
         map_of(random, record, &mechanism, axes);
@@ -77,7 +77,7 @@ fn maps_of_five_bars() {
 /// Legs of variable length meet their limits.
 #[test]
 fn maps_of_three_legs() {
-    check("position_maps_three_legs", 6, |random, record| {
+    check("position_maps_three_legs", 14, |random, record| {
         let mechanism = super::mechanisms::three_legs(random);
         let names: &[&str] = [&["x", "y"][..], &["y", "rz"], &["x", "y", "rz"]][random.below(3)];
         let axes = axes(random, &mechanism, names, 4);
@@ -87,7 +87,7 @@ fn maps_of_three_legs() {
 
 #[test]
 fn maps_of_the_catalogue() {
-    check("position_maps_catalogue", 4, |random, record| {
+    check("position_maps_catalogue", 8, |random, record| {
         let (name, names): (&str, &[&str]) =
             [("five-bar", &["x", "y"][..]), ("3r", &["x", "z"]), ("3rrr", &["x"])][random.below(3)];
         let mechanism = catalogue::load(name).unwrap();

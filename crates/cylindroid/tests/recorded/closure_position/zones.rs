@@ -40,7 +40,7 @@ fn options(random: &mut Random<'_>, names: &[&str]) -> ZoneOptions {
 
 #[test]
 fn zones_of_five_bars() {
-    check("position_zones_five_bars", 10, |random, record| {
+    check("position_zones_five_bars", 24, |random, record| {
         let mechanism = five_bar(random);
         let names: &[&str] = if random.once_in(3) { &["q_a1", "q_b1"] } else { &["x", "y"] };
         match Zone::of(&mechanism, options(random, names)) {
@@ -52,7 +52,7 @@ fn zones_of_five_bars() {
 
 #[test]
 fn zones_of_three_legs() {
-    check("position_zones_three_legs", 7, |random, record| {
+    check("position_zones_three_legs", 16, |random, record| {
         let mechanism = super::mechanisms::three_legs(random);
         let names: &[&str] =
             [&["x", "y"][..], &["x", "y", "rz"], &["leg0", "leg1", "leg2"]][random.below(3)];
@@ -65,7 +65,7 @@ fn zones_of_three_legs() {
 
 #[test]
 fn zones_of_the_catalogue() {
-    check("position_zones_catalogue", 4, |random, record| {
+    check("position_zones_catalogue", 8, |random, record| {
         let (name, components): (&str, &[&str]) = [
             ("five-bar", &["x", "y"][..]),
             ("3rrr", &["x", "y"][..]),

@@ -4,12 +4,13 @@
 use cylindroid::control::{MotionTask, PoseTolerance, TaskObjective, TaskServo, TaskServoOptions};
 use cylindroid::{Mechanism, Pose, Twist};
 
+use super::closed::four_bar;
 use super::servo::task;
-use super::tasks::{move_targets, note};
+use super::tasks::{move_targets, note, servo_of};
 use super::world::obstacles;
 use super::{Watch, any_robot, fail, few_joints, of_twist, singular, sum};
 use crate::record::{Record, check};
-use crate::robots::{Random, of_catalogue, robot};
+use crate::robots::{Random, five_bar, of_catalogue, robot, spatial_loop};
 
 fn options(robot: &Mechanism, random: &mut Random<'_>) -> TaskServoOptions {
     let mut options = TaskServoOptions::new(robot);
@@ -22,9 +23,10 @@ fn options(robot: &Mechanism, random: &mut Random<'_>) -> TaskServoOptions {
     options
 }
 
-/// Poses of the tool, or parts of them, that may be out of reach.
+/// Poses of the tool or the reference of a closed chain, or parts of them, that may be out of reach.
 fn frames(robot: &Mechanism, q: &[f64], dt: f64, random: &mut Random<'_>) -> Vec<MotionTask> {
-    let pose = robot.state(q).unwrap().pose(robot.tool()).unwrap();
+    let frame = if robot.is_closed() { robot.reference() } else { robot.tool() };
+    let pose = robot.state(q).unwrap().pose(frame).unwrap();
     let size = robot.reach() * random.power(-1.5, 0.5);
     let tolerance = 10.0_f64.powi(-2 - random.below(2) as i32);
     let one = |i: usize, random: &mut Random<'_>| {
@@ -35,7 +37,7 @@ fn frames(robot: &Mechanism, q: &[f64], dt: f64, random: &mut Random<'_>) -> Vec
             _ => Pose { rotation: away.rotation, translation: pose.translation + away.translation },
         };
         let objective = TaskObjective::Frame {
-            end_effector: robot.tool().into(),
+            end_effector: frame.into(),
             components: task(random),
             target: target.into(),
         };
@@ -49,21 +51,17 @@ fn frames(robot: &Mechanism, q: &[f64], dt: f64, random: &mut Random<'_>) -> Vec
     (0..1 + random.below(3)).map(|i| one(i, random)).collect()
 }
 
-fn until_at_rest(robot: &Mechanism, random: &mut Random<'_>, record: &mut Record) {
-    let q = if random.once_in(2) { singular(robot, random) } else { random.configuration(robot) };
-    let options = options(robot, random);
-    let tasks = frames(robot, &q, options.dt, random);
-    let mut servo = match TaskServo::new(robot, tasks, options) {
-        Ok(servo) => servo,
-        Err(error) => return fail(record, &error),
-    };
-    let back = random.vec3(0.3 * robot.reach());
+/// Steps of the servo; `before` changes something before each.
+fn follow(
+    mut servo: TaskServo,
+    mut q: Vec<f64>,
+    steps: usize,
+    record: &mut Record,
+    mut before: impl FnMut(usize, &mut TaskServo, &[f64], &mut Record),
+) {
     let mut watch = Watch::new(servo.dt());
-    let mut q = q;
-    for step in 1..=81 {
-        if step == 55 {
-            move_targets(&mut servo, back, &q);
-        }
+    for step in 0..steps {
+        before(step, &mut servo, &q, record);
         if let Err(error) = servo.step(&q) {
             return fail(record, &error);
         }
@@ -74,11 +72,28 @@ fn until_at_rest(robot: &Mechanism, random: &mut Random<'_>, record: &mut Record
     watch.end(record);
 }
 
+fn until_at_rest(robot: &Mechanism, q: Vec<f64>, random: &mut Random<'_>, record: &mut Record) {
+    let options = options(robot, random);
+    let tasks = frames(robot, &q, options.dt, random);
+    let Some(servo) = servo_of(robot, tasks, options, record) else { return };
+    let back = random.vec3(0.3 * robot.reach());
+    follow(servo, q, 81, record, |step, servo, q, _| {
+        if step == 54 {
+            move_targets(servo, back, q);
+        }
+    });
+}
+
+fn some_configuration(robot: &Mechanism, random: &mut Random<'_>) -> Vec<f64> {
+    if random.once_in(2) { singular(robot, random) } else { random.configuration(robot) }
+}
+
 #[test]
 fn edges_of_arms() {
     check("control_edges_arms", 40, |random, record| {
         let robot = of_catalogue(random, false);
-        until_at_rest(&robot, random, record);
+        let q = some_configuration(&robot, random);
+        until_at_rest(&robot, q, random, record);
     });
 }
 
@@ -86,7 +101,8 @@ fn edges_of_arms() {
 fn edges_of_few_joints() {
     check("control_edges_few", 60, |random, record| {
         let robot = few_joints(random);
-        until_at_rest(&robot, random, record);
+        let q = some_configuration(&robot, random);
+        until_at_rest(&robot, q, random, record);
     });
 }
 
@@ -94,7 +110,22 @@ fn edges_of_few_joints() {
 fn edges_of_random_robots() {
     check("control_edges_random", 40, |random, record| {
         let robot = any_robot(random);
-        until_at_rest(&robot, random, record);
+        let q = some_configuration(&robot, random);
+        until_at_rest(&robot, q, random, record);
+    });
+}
+
+#[test]
+fn edges_of_closed_chains() {
+    check("control_edges_closed", 50, |random, record| {
+        let robot = match random.below(5) {
+            0 => five_bar(random),
+            1 => spatial_loop(random),
+            2 => four_bar(random),
+            _ => of_catalogue(random, true),
+        };
+        let q = robot.home().to_vec();
+        until_at_rest(&robot, q, random, record);
     });
 }
 
@@ -108,28 +139,17 @@ fn twists_of_tasks() {
         let (dt, reach) = (options.dt, robot.reach());
         let tasks = frames(&robot, &q, dt, random);
         let count = tasks.len();
-        let mut servo = match TaskServo::new(&robot, tasks, options) {
-            Ok(servo) => servo,
-            Err(error) => return fail(record, &error),
-        };
-        let (mut watch, mut q) = (Watch::new(dt), q);
-        for step in 0..54 {
+        let Some(servo) = servo_of(&robot, tasks, options, record) else { return };
+        follow(servo, q, 54, record, |step, servo, _, record| {
             if step % 9 == 0 && step < 36 {
                 let name = random.below(count).to_string();
                 let twist = Twist { linear: random.vec3(reach), angular: random.vec3(1.0) };
                 let timeout = dt * [1.0, 7.5, 20.0, f64::INFINITY][random.below(4)];
                 servo.command_twist(&name, twist, timeout).unwrap();
             }
-            if let Err(error) = servo.step(&q) {
-                return fail(record, &error);
-            }
             let commands = (0..count).map(|i| servo.commanded_twist(&i.to_string()).unwrap());
             record.number(commands.flatten().map(of_twist).sum());
-            note(&servo, &mut watch, record);
-            servo.advance(&mut q);
-        }
-        record.number(sum(&q));
-        watch.end(record);
+        });
     });
 }
 
@@ -142,26 +162,14 @@ fn slow_retreats() {
         let mut options = options(&robot, random);
         options.jerk = random.power(0.5, 2.0);
         options.collisions = Some(obstacles(&robot, &q, random));
-        let dt = options.dt;
-        let mut tasks = frames(&robot, &q, dt, random);
-        tasks.iter_mut().for_each(|task| task.gain = 0.9 / dt);
-        let mut servo = match TaskServo::new(&robot, tasks, options) {
-            Ok(servo) => servo,
-            Err(error) => return fail(record, &error),
-        };
-        let (mut watch, mut q) = (Watch::new(dt), q);
+        let mut tasks = frames(&robot, &q, options.dt, random);
+        tasks.iter_mut().for_each(|task| task.gain = 0.9 / options.dt);
+        let Some(servo) = servo_of(&robot, tasks, options, record) else { return };
         let way = random.vec3(0.1 * robot.reach());
-        for step in 0..54 {
+        follow(servo, q, 54, record, |step, servo, q, _| {
             if step % 13 == 12 {
-                move_targets(&mut servo, way, &q);
+                move_targets(servo, way, q);
             }
-            if let Err(error) = servo.step(&q) {
-                return fail(record, &error);
-            }
-            note(&servo, &mut watch, record);
-            servo.advance(&mut q);
-        }
-        record.number(sum(&q));
-        watch.end(record);
+        });
     });
 }

@@ -121,7 +121,7 @@ pub(super) fn note(servo: &TaskServo, watch: &mut Watch, record: &mut Record) {
     watch.note(record, &word, &[sum(servo.joint_velocities()), shares, errors, sum(&near)]);
 }
 
-fn servo_of(
+pub(super) fn servo_of(
     robot: &Mechanism,
     tasks: Vec<MotionTask>,
     options: TaskServoOptions,
