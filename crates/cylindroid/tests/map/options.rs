@@ -1,8 +1,8 @@
 //! What maps take and refuse; serial arms and spatial platforms.
 
-use cylindroid::model::formats;
+use cylindroid::model::{Dimension, JointKind, JointSpec, Limits, formats};
 use cylindroid::sweep::{LocusKind, Map, MapOptions};
-use cylindroid::{Mechanism, catalogue};
+use cylindroid::{Mechanism, Pose, Vec3, catalogue};
 
 use crate::five_bar::{axis, map};
 use crate::robots::{five_bar, three_rpr};
@@ -171,5 +171,38 @@ fn limits_have_curves() {
         if slack.abs() > 1e-6 {
             assert_eq!(one.reached[cell], slack > 0.0, "{p:?} {slack}");
         }
+    }
+}
+
+/// The limits of a gantry are the sides of its workspace. A side along which a map ends has no curve,
+/// others go on to it.
+#[test]
+fn limits_of_a_gantry_are_its_sides() {
+    let slider = |name: &str, parent: &str, child: &str, axis: Vec3, upper: f64| JointSpec {
+        axis,
+        limits: Limits { lower: 0.0, upper, ..Limits::NONE },
+        ..JointSpec::new(name, JointKind::Prismatic, parent, child)
+    };
+    let mut builder = Mechanism::builder("gantry");
+    builder.dimension(Dimension::Planar);
+    builder.joint(slider("bridge", "ground", "bridge", Vec3::X, 1.0));
+    builder.joint(slider("carriage", "bridge", "carriage", Vec3::Y, 2.0));
+    builder.frame("tip", "carriage", Pose::IDENTITY).tool("tip");
+    let gantry = builder.build().unwrap();
+    for beyond in [0.13, 0.0] {
+        let axes = vec![axis("x", -beyond, 1.0 + beyond, 11), axis("y", -0.2, 2.1, 17)];
+        let map = map(&gantry, axes);
+        let sides = [(1, 0.0, 1.0), (1, 2.0, 1.0), (0, 0.0, 2.0), (0, 1.0, 2.0)];
+        let inside = if beyond == 0.0 { 2 } else { 4 };
+        for (own, value, length) in sides.into_iter().take(inside) {
+            let points = map.loci.iter().flat_map(|l| &l.points);
+            let on = points.filter(|p| (p[own] - value).abs() < 1e-9);
+            let along: Vec<f64> = on.map(|p| p[1 - own]).collect();
+            let from = along.iter().copied().fold(f64::INFINITY, f64::min);
+            let to = along.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            assert!(from.abs() < 1e-9 && (to - length).abs() < 1e-9, "{own} {value}: {along:?}");
+        }
+        assert_eq!(map.loci.len(), inside);
+        assert!(map.loci.iter().all(|l| l.kind == LocusKind::Limit));
     }
 }
