@@ -80,6 +80,14 @@ mod tests {
         let table = Geometry::Box { size: Vec3::new(2.0, 2.0, 0.1) };
         model.add_obstacle("table", &table, Pose::from_translation(Vec3::Z * -1.0)).unwrap();
         let (mut near, mut row, mut seed) = (Vec::new(), vec![0.0; robot.n()], 5);
+        let at_rest = robot.state(robot.home()).unwrap();
+        model.near(&at_rest, f64::INFINITY, &mut near).unwrap();
+        for Pair { a, b } in near.iter().map(|pair| model.pairs()[pair.pair]) {
+            // Twice as far for twice the change.
+            let way = |body, change: f64| model.way(&at_rest, body, &[change; 5]);
+            assert_eq!((way(a, 2.0), way(b, 2.0)), (2.0 * way(a, 1.0), 2.0 * way(b, 1.0)));
+            assert_eq!((way(a, 0.0), way(b, 0.0)), (0.0, 0.0));
+        }
         let mut tight = 0;
         for _ in 0..200 {
             let limits = robot.coordinates().iter().map(|c| c.limits);

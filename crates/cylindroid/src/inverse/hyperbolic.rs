@@ -352,3 +352,27 @@ fn damped(
         reason,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// g / (g^2 + mu^2), at zero too; lambda and mu are lengths as g.
+    #[test]
+    fn gains_of_dampings() {
+        let damped = |g: f64, length: f64| HyperbolicDamping::Invariant { mu: 0.4 }.gain(g, length);
+        assert_eq!(damped(0.0, 1.0), Some(0.0));
+        for g in [1.0, -1.0, 0.3, -2.0, 1e-9] {
+            for length in [1.0, 0.2] {
+                let mu: f64 = 0.4 / length;
+                let expected = g / (g * g + mu * mu);
+                let found = damped(g, length).unwrap();
+                assert!((found - expected).abs() < 1e-15 * expected.abs().max(1.0), "{g} {length}");
+            }
+        }
+        let plain = |g| HyperbolicDamping::None.gain(g, 1.0);
+        assert_eq!((plain(0.0), plain(1.0), plain(-0.5)), (None, Some(1.0), Some(-2.0)));
+        let gram = |g| HyperbolicDamping::Gram { lambda: 0.5 }.gain(g, 0.5);
+        assert_eq!((gram(-1.0), gram(1.0), gram(0.0)), (None, Some(0.5), Some(1.0)));
+    }
+}

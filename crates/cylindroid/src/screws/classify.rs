@@ -262,8 +262,7 @@ fn screw_and_plane(
     let normal = t.cross(u);
     let across = w.cross(normal);
     let across = across * (1.0 / across.norm());
-    let other = normal.cross(across);
-    let other = if other.dot(w) < 0.0 { -other } else { other };
+    let other = normal.cross(across); // on the side of w
     // The second axis is turned about, if need be, so that p is not negative.
     let slope = other.dot(w.cross(across)) / other.dot(w);
     along(Class::IC, vec![], Some(slope.abs()), w, if slope < 0.0 { -across } else { across })

@@ -77,6 +77,23 @@ fn five_bar_has_four_working_modes() {
     assert!(reached.iter().all(|n| *n > 5), "{reached:?}");
 }
 
+/// Of the working modes the one nearest to the posture comes first.
+#[test]
+fn a_posture_chooses_the_working_mode() {
+    let mechanism = five_bar();
+    let target = at(0.9, 1.1);
+    let found = all(&mechanism, XY, target, 20);
+    assert_eq!(found.len(), 4);
+    for near in &found {
+        let posture = near.q.iter().map(|x| x + 0.05).collect();
+        let options = IkOptions { posture: Some(posture), ..IkOptions::default() };
+        let goal = Goal::frame(mechanism.reference(), XY, target);
+        let first = &solve_distinct(&mechanism, &[goal], &options, 20).unwrap()[0];
+        let apart = first.q.iter().zip(&near.q).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f64::max) < 1e-7, "{:?} instead of {:?}", first.q, near.q);
+    }
+}
+
 /// The legs of a 3-RPR are as long as the distance of their ends.
 #[test]
 fn legs_of_a_planar_platform() {

@@ -80,3 +80,26 @@ impl AnalyticSolutions {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_equal_solutions_the_more_accurate_is_kept() {
+        let of = |turn: f64, position_error: f64, orientation_error: f64| AnalyticSolution {
+            q: [0.1, 0.2, turn, 0.4, 0.5, 0.6],
+            free: [false; 6],
+            position_error,
+            orientation_error,
+        };
+        let mut found = AnalyticSolutions::NONE;
+        found.insert(of(0.3, 2e-9, 1e-9));
+        found.insert(of(0.3 + std::f64::consts::TAU, 1e-9, 3e-9));
+        found.insert(of(1.3, 5e-9, 5e-9));
+        assert_eq!(&found[..], [of(0.3, 2e-9, 1e-9), of(1.3, 5e-9, 5e-9)]);
+        found.insert(of(0.3, 1e-9, 1e-9));
+        found.insert(of(1.3, 0.0, 4e-9));
+        assert_eq!(&found[..], [of(0.3, 1e-9, 1e-9), of(1.3, 0.0, 4e-9)]);
+    }
+}

@@ -341,3 +341,27 @@ fn one_speed(segments: &[Segment], bounds: CartesianBounds) -> Vec<Speeds> {
     };
     (0..count).map(speeds).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::uniform;
+
+    /// The largest blend needs exactly the room that there is.
+    #[test]
+    fn the_largest_blend_fills_the_room() {
+        let mut state = 5_u64;
+        let mut random = |most: f64| most * uniform(&mut state);
+        let mut widest = 0;
+        for _ in 0..2000 {
+            let (linear, angular, turning) = (random(2.0), random(2.0), random(3.0));
+            let corner = Corner { linear, angular, turning };
+            let (room, ramp) = (random(2.0), random(1.0));
+            let y = corner.largest(room, ramp);
+            let filled = corner.need(y) + ramp * y;
+            assert!((filled - room).abs() < 1e-10 * (1.0 + room), "{corner:?} {room} {ramp} {y}");
+            widest += usize::from(turning * y > 1.0 - 1.0 / WIDEST);
+        }
+        assert!(widest > 100, "{widest}");
+    }
+}
