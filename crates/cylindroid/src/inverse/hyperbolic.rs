@@ -21,7 +21,8 @@
 //! Source   Donelan & Selig, theorems 1, 2 and 5, section 6.2; its example 1 has a wrong entry
 //!          (row 3, column 2: (16 h^2 + 16 h - 1) / 32 h), its damped form the wrong promise that
 //!          it always exists
-//! Checked  tests/it/screws/vectors/, tests/it/screws/laws.rs, tests/it/screws/invariance.rs
+//! Checked  tests/it/screws/vectors/, tests/it/screws/laws.rs, tests/it/screws/invariance.rs,
+//!          tests in this file
 
 use super::report::{Inverse, TruncatedDirection, assemble};
 use super::weighted::Weights;

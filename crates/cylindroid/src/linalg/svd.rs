@@ -15,7 +15,7 @@
 //!          allocation, and fastest on 6 x n. The alternative, a general library SVD, took 2.4 to
 //!          4.1 us for 6 x 7.
 //! Source   Hestenes 1958; de Rijk 1989 (ordering); Maciejewski & Klein 1989 (warm start)
-//! Checked  tests/it/svd.rs
+//! Checked  tests/it/svd.rs, tests in this file
 
 use super::blocks::add_through;
 use super::jacobi::{Rotations, Start};

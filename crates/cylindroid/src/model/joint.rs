@@ -1,6 +1,7 @@
 //! Joints: their kinds, frames and limits.
 //!
-//! Checked  tests/formats/mechanism_file.rs::every_joint_type_is_read, tests/it/graph.rs
+//! Checked  tests/formats/mechanism_file.rs::every_joint_type_is_read, tests/it/graph.rs,
+//!          tests in this file
 
 use std::ops::Range;
 

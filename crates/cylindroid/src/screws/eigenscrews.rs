@@ -15,7 +15,7 @@
 //!          matrices need no case of their own
 //! Source   Ball 1900, chapter IX (principal screws of inertia); Patterson & Lipkin 1993 (h = 0);
 //!          Huang & Schimmels 2000 (decomposition)
-//! Checked  tests/it/screws/eigenscrews.rs
+//! Checked  tests/it/screws/eigenscrews.rs, tests in this file
 
 use super::screw::Screw;
 use super::signature::Signature;

@@ -1,7 +1,7 @@
 //! Hyperbolic projector coordinates on fixed-size arrays, without allocation: the arithmetic of
 //! `inverse/hyperbolic_fixed.rs`.
 //!
-//! Checked  tests/it/hyperbolic.rs::independent_*
+//! Checked  tests/it/hyperbolic.rs::independent_*, tests in this file
 
 use super::projector::coordinates;
 use super::span::{Scale, Span, angular, dot, join, linear};

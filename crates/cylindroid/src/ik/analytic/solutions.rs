@@ -2,7 +2,7 @@
 //!
 //! Units    rad, m
 //! Valid    at most eight; equal ones, up to full turns, are one
-//! Checked  tests/it/analytic/
+//! Checked  tests/it/analytic/, tests in this file
 
 use std::ops::Deref;
 

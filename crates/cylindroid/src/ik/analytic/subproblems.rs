@@ -13,7 +13,7 @@
 //!          trigonometric function. Roots of the quartic are bracketed by those of its derivatives,
 //!          which loses no double roots, whereas Ferrari's formulas lose digits
 //! Source   Paden 1986; Elias & Wen 2025, IK-Geo, subproblems 1, 3, 4, 5, 6
-//! Checked  tests/it/analytic/, tests in this file
+//! Checked  tests/it/analytic/, src/ik/analytic/subproblems/tests.rs
 
 use std::cell::Cell;
 use std::f64::consts::FRAC_PI_4;

@@ -18,7 +18,7 @@
 //!          which each half is enough for its end, nothing depends on the rest of the path; such a
 //!          stretch has the quicker of both
 //! Source   forward and backward pass: Bobrow, Dubowsky & Gibson 1985; blends: Craig 2005, section 7.3
-//! Checked  tests/motion/dense_waypoints.rs, tests/motion/waypoints.rs
+//! Checked  tests/motion/dense_waypoints.rs, tests/motion/waypoints.rs, tests in this file
 
 use crate::control::motion::cartesian_move::CartesianBounds;
 use crate::scalar::largest;
