@@ -4,13 +4,16 @@
 //! Why so   column by column into rows: Parquet's own rows take ten times as long
 //! Checked  tests/sweep/folder.rs::a_part_is_a_file_of_configurations
 
+use std::fs::File;
+use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::Path;
 
+use bytes::Bytes;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
 
 use crate::error::Error;
 use crate::model::open_regular_file;
@@ -19,6 +22,37 @@ type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Numbers at most: 4 GiB.
 const MOST: usize = 1 << 29;
+
+/// A file beyond whose end nothing is read. The header of a page in a damaged file may announce a list of
+/// 2^31 entries, which Parquet's reader would skip one by one although the file has ended.
+struct Bounded<T>(T);
+
+impl Length for Bounded<File> {
+    fn len(&self) -> u64 {
+        self.0.len()
+    }
+}
+
+impl ChunkReader for Bounded<File> {
+    type T = Bounded<BufReader<File>>;
+
+    fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
+        self.0.get_read(start).map(Bounded)
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes, ParquetError> {
+        self.0.get_bytes(start, length)
+    }
+}
+
+impl Read for Bounded<BufReader<File>> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self.0.read(buffer)? {
+            0 if !buffer.is_empty() => Err(ErrorKind::UnexpectedEof.into()),
+            count => Ok(count),
+        }
+    }
+}
 
 /// The columns of these coordinates, a row after the other: `q.` and the name, as in the motions of
 /// `move`, or the name.
@@ -53,7 +87,7 @@ fn read_columns(
     let because = |error: ParquetError| {
         refuse(format!("{error}; files without compression or with Snappy's can be read"))
     };
-    let reader = SerializedFileReader::new(open_regular_file(path)?).map_err(because)?;
+    let reader = SerializedFileReader::new(Bounded(open_regular_file(path)?)).map_err(because)?;
     let metadata = reader.metadata().file_metadata();
     let columns: Vec<String> =
         metadata.schema_descr().columns().iter().map(|c| c.path().string()).collect();

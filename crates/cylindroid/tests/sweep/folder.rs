@@ -167,6 +167,9 @@ fn a_part_is_a_file_of_configurations() {
     let first = parquet_columns(&findings.join("place-of-column.parquet"), &["q1"]);
     let error = first.unwrap_err().to_string();
     assert!(error.contains("the place of column 'q1' is negative"), "{error}");
+    // A list of 2^31 numbers beyond the end of the file, in the header of a page.
+    let error = read("end-of-file.parquet").unwrap_err().to_string();
+    assert!(error.contains("end of file"), "{error}");
     if cfg!(unix) {
         // A pipe waits for its writer.
         let pipe = folder.path().join("pipe.parquet");
