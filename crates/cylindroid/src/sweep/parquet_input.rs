@@ -1,6 +1,8 @@
 //! Columns of a Parquet file by their names: configurations, poses, quantities.
 //!
-//! Valid    columns of numbers without gaps, uncompressed or by Snappy; other columns are ignored
+//! Valid    columns of numbers without gaps, uncompressed or by Snappy; other columns are ignored.
+//!          Headers that announce lists of 2^31 truth values, which have no bytes, take seconds for
+//!          each: parquet skips entries one by one (apache/arrow-rs#9874)
 //! Why so   column by column into rows: Parquet's own rows take ten times as long
 //! Checked  tests/sweep/folder.rs::a_part_is_a_file_of_configurations
 
