@@ -4,13 +4,12 @@
 use cylindroid::control::{MotionTask, PoseTolerance, TaskObjective, TaskServo, TaskServoOptions};
 use cylindroid::{Mechanism, Pose, Twist};
 
-use super::closed::four_bar;
 use super::servo::task;
-use super::tasks::{move_targets, note, servo_of};
+use super::tasks::{closed_chain, move_targets, note, servo_of};
 use super::world::obstacles;
 use super::{Watch, any_robot, fail, few_joints, of_twist, singular, sum};
 use crate::record::{Record, check};
-use crate::robots::{Random, five_bar, of_catalogue, robot, spatial_loop};
+use crate::robots::{Random, of_catalogue, robot};
 
 fn options(robot: &Mechanism, random: &mut Random<'_>) -> TaskServoOptions {
     let mut options = TaskServoOptions::new(robot);
@@ -118,12 +117,7 @@ fn edges_of_random_robots() {
 #[test]
 fn edges_of_closed_chains() {
     check("control_edges_closed", 50, |random, record| {
-        let robot = match random.below(5) {
-            0 => five_bar(random),
-            1 => spatial_loop(random),
-            2 => four_bar(random),
-            _ => of_catalogue(random, true),
-        };
+        let robot = closed_chain(random);
         let q = robot.home().to_vec();
         until_at_rest(&robot, q, random, record);
     });

@@ -249,15 +249,19 @@ fn simulations() {
     });
 }
 
+pub(super) fn closed_chain(random: &mut Random<'_>) -> Mechanism {
+    match random.below(5) {
+        0 => five_bar(random),
+        1 => spatial_loop(random),
+        2 => four_bar(random),
+        _ => of_catalogue(random, true),
+    }
+}
+
 #[test]
 fn closed_chains() {
     check("control_tasks_closed", 40, |random, record| {
-        let robot = match random.below(5) {
-            0 => five_bar(random),
-            1 => spatial_loop(random),
-            2 => four_bar(random),
-            _ => of_catalogue(random, true),
-        };
+        let robot = closed_chain(random);
         let q = robot.home().to_vec();
         let mut options = options(&robot, random);
         if robot.name() == "five-bar" || robot.name() == "loop" {
