@@ -372,8 +372,8 @@ mod tests {
         toml::parse(&text.concat(), Path::new("parallelograms.toml")).unwrap()
     }
 
-    /// A wedge that is driven along x lifts a slider by its slope: of both, which are as long, the
-    /// wedge has the share 1 / sqrt(1 + slope^2).
+    /// A driven wedge lifts a slider: their rates are 1 and the slope, so that the actuated share of
+    /// the motion is 1 / sqrt(1 + slope^2).
     #[test]
     fn the_share_of_a_wedge_is_that_of_its_slope() {
         for slope in [0.1, 0.5, 2.0] {

@@ -359,7 +359,7 @@ impl Servo {
             position_error,
             orientation_error,
             lag: self.follower.lag,
-            singular_ratio: self.singular_ratio(),
+            singular_ratio: self.svd.singular_ratio(),
             rank,
             saturation,
         };

@@ -58,7 +58,7 @@ impl Servo {
     /// As [`Servo::step`].
     pub fn condition(&mut self, q: &[f64]) -> Result<ConditionReport> {
         let svd = self.decomposed(q)?;
-        let weakest = (!svd.is_empty() && svd.value(0) > 0.0).then(|| {
+        let weakest = (svd.largest() > 0.0).then(|| {
             let twist = self.space.twist(svd.u(svd.len() - 1));
             if self.options.task.axes == ReferenceFrame::Local {
                 let turn = self.chain.pose().rotation;
@@ -172,11 +172,6 @@ impl Servo {
             rates[c] = rate / fastest;
         }
         Some(rates)
-    }
-
-    /// Ratio of the smallest to the largest singular value.
-    pub(super) fn singular_ratio(&self) -> f64 {
-        self.svd.singular_ratio()
     }
 
     /// Distances prove nothing unless the task constrains the whole position.

@@ -257,7 +257,7 @@ impl Servo {
     /// Stores the joint velocities of a step in which no joint meets a limit; `None`, without any
     /// effect, if one may, or if not all directions are kept.
     pub(super) fn store_unlimited_rates(&mut self, q: &[f64], rank: usize) -> Option<BrakingState> {
-        let is_regular = rank == self.kept.len() && self.singular_ratio() >= FOLD;
+        let is_regular = rank == self.kept.len() && self.svd.singular_ratio() >= FOLD;
         if !is_regular || self.coupled.is_some() || self.edge_aim.is_some() {
             return None;
         }

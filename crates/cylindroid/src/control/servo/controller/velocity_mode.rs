@@ -94,7 +94,7 @@ impl Servo {
 
     /// The reason of a stall; in velocity mode near a singularity, the singularity.
     pub(super) fn twist_stall(&self, stall: Stall) -> Stall {
-        let ratio = self.singular_ratio();
+        let ratio = self.svd.singular_ratio();
         if stall != Stall::Slow || !self.twist_follower.is_stalled || ratio >= NEAR_SINGULAR {
             return stall;
         }

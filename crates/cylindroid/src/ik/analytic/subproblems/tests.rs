@@ -1,5 +1,9 @@
+//! Roots of quartics, turns that are known.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use super::{EquationPair, Misses, Order, linear, onto, real_roots};
-use crate::scalar::uniform;
+use crate::scalar::{nearest_turn, uniform};
 use crate::spatial::{Rotation, Vec3};
 
 #[test]
@@ -116,7 +120,7 @@ fn conditions_on_two_turns() {
 fn a_turn_maps_a_vector_onto_another() {
     let mut state = 11_u64;
     let mut random = || 2.0 * uniform(&mut state) - 1.0;
-    let right = [0.0, 1.0, 2.0, -1.0].map(|quarters| quarters * std::f64::consts::FRAC_PI_2);
+    let right = [0.0, 1.0, 2.0, -1.0].map(|quarters| quarters * FRAC_PI_2);
     let others = [0; 20].map(|_| 3.0 * random());
     for turn in right.into_iter().chain(others) {
         for (axis, vector) in
@@ -132,7 +136,7 @@ fn a_turn_maps_a_vector_onto_another() {
                 false
             });
             assert_eq!(found.len(), 1, "{turn}: {found:?}");
-            let apart = crate::scalar::nearest_turn(found[0].0 - turn, 0.0);
+            let apart = nearest_turn(found[0].0 - turn, 0.0);
             assert!(apart.abs() < 1e-14 && !found[0].1, "{turn}: {found:?}");
         }
     }
@@ -143,7 +147,8 @@ fn a_turn_maps_a_vector_onto_another() {
             found.push(angle.angle);
             false
         });
-        let apart = found.iter().map(|x| (x.abs() - std::f64::consts::PI * f64::abs(turn)).abs());
-        assert!(found.len() == 1 && apart.sum::<f64>() < 1e-14, "{image:?}: {found:?}");
+        assert_eq!(found.len(), 1, "{image:?}: {found:?}");
+        let apart = nearest_turn(found[0] - PI * turn, 0.0);
+        assert!(apart.abs() < 1e-14, "{image:?}: {found:?}");
     }
 }
