@@ -25,9 +25,10 @@ impl Solver {
         &self.start
     }
 
-    /// The next of a sequence of random configurations within the limits.
+    /// The next of a sequence of random configurations within the limits, whatever was searched
+    /// before.
     pub(crate) fn random_configuration(&self, q: &mut [f64], random: &mut u64) {
-        self.sample_configuration(q, false, random);
+        self.sample_at_distance(q, false, 0.0, random);
     }
 
     /// True if a goal is farther from the first joint of its chain than the length of the chain: a

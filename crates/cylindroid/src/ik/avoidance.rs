@@ -16,14 +16,13 @@ use super::self_motion::Descent;
 use crate::collision::{CollisionModel, NearPair};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::max_abs;
 use crate::model::Mechanism;
 
 /// Steps away from other bodies.
 const STEPS: usize = 40;
 /// Distance beyond the gap that a step aims at (m).
 const BEYOND: f64 = 1e-3;
-/// Largest change of a coordinate per step [rad, or lengths].
+/// Largest change of a coordinate per step [rad, or m; of long slides a share of their travel].
 const LONGEST: f64 = 0.2;
 /// Levenberg-Marquardt steps after each.
 const CORRECTIONS: usize = 8;
@@ -104,7 +103,7 @@ impl Avoidance {
             };
             let lacks = self.gap + BEYOND - closest.distance;
             let Some(rate) = rate.filter(|rate| *rate > 1e-6 * lacks) else { return Ok(false) };
-            let most = max_abs(&problem.d);
+            let most = problem.largest_change();
             let share = (lacks / rate).min(LONGEST / most);
             problem.d.iter_mut().for_each(|d| *d *= share);
             problem.advance(q);

@@ -15,8 +15,19 @@ pub(super) const MIN_DAMPING: f64 = 1e-14;
 /// Iterations within which the squared error must fall to a quarter; otherwise the restart is
 /// abandoned.
 pub(super) const MAX_STAGNATION: usize = 4;
-/// Largest change of a coordinate per iteration [rad, or lengths].
+/// Largest change of a coordinate per iteration [rad, or m times [`stretch`]].
 pub(super) const MAX_STEP: f64 = 1.5;
+
+/// Unit (m) in which a slide of this travel (m) is measured when the goals are this far away (m), so
+/// that a step may cover the distance or the travel; 1 up to [`MAX_STEP`]. Without travel, as for
+/// angles, it is 1 rad.
+///
+/// Why so   squared errors damp changes of all coordinates: with 1 m as the unit a slide would
+/// approach a goal at a distance of d m by 1/d m per iteration
+#[inline(always)]
+pub(super) fn stretch(travel: f64, distance: f64) -> f64 {
+    (travel.min(distance) / MAX_STEP).max(1.0)
+}
 
 /// The errors of a configuration: the largest over all goals.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +54,18 @@ pub(super) fn is_admissible(mechanism: &Mechanism, q: &[f64]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::is_admissible;
+    use super::{is_admissible, stretch};
     use crate::model::catalogue;
+
+    /// Angles and short slides keep their unit exactly.
+    #[test]
+    fn units_of_slides() {
+        for distance in [0.0, 1.0, 1e6, f64::INFINITY, f64::NAN] {
+            assert!(stretch(0.0, distance) == 1.0 && stretch(1.5, distance) == 1.0);
+        }
+        assert!(stretch(1e9, 1.5) == 1.0 && stretch(f64::INFINITY, 300.0) == 200.0);
+        assert_eq!(stretch(30.0, 300.0), 20.0);
+    }
 
     #[test]
     fn what_may_be_a_solution() {

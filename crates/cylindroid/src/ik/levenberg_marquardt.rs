@@ -2,7 +2,8 @@
 //! the position limits.
 //!
 //! Formula  d minimises |A d - e|^2 + l |d|^2 with q + d within the limits, l = DAMPING |e|^2;
-//!          e the errors of all goals, positions over the characteristic length, A their Jacobian
+//!          e the errors of all goals, positions over the characteristic length, A their Jacobian;
+//!          long slides far from the goals in larger units (`stretch` in `convergence.rs`)
 //! Shapes   A: m x n by columns, m components of all goals, n coordinates that move them
 //! Valid    any tree. Joints at a limit that would leave it are clamped, the step is truncated at
 //!          the others. Orientation errors are rotation vectors in the world, whose rate near the
@@ -13,7 +14,9 @@
 //! Source   Sugihara 2011 (damping by the error); projected Newton steps: Bertsekas 1982
 //! Checked  tests/it/ik.rs, tests in this file
 
-use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
+use super::convergence::{
+    DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached, stretch,
+};
 use super::goal::Goal;
 use super::goal_rows::GoalRows;
 use super::half_space_rows::HalfSpaceRows;
@@ -40,6 +43,10 @@ pub(super) struct Problem {
     /// Limits of these coordinates.
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
+    /// Their travel (m), infinite without limits; 0 for angles and for those that keep their values.
+    pub(super) travel: Vec<f64>,
+    /// True if a slide may travel farther than one step of 1 m units.
+    pub(super) has_long_slides: bool,
     /// True for those that return to the same pose after a full turn.
     pub(super) turns: Vec<bool>,
     /// True if all are angles and lengths.
@@ -79,7 +86,14 @@ impl Problem {
         let all = mechanism.coordinates();
         let simple =
             |&c: &usize| matches!(all[c].kind, CoordinateKind::Angle | CoordinateKind::Length);
+        let travel = |c: &usize| {
+            let is_free_slide = all[*c].kind.is_length() && !options.fixed.contains(c);
+            if is_free_slide { all[*c].limits.upper - all[*c].limits.lower } else { 0.0 }
+        };
+        let travel: Vec<f64> = coordinates.iter().map(travel).collect();
         Ok(Self {
+            has_long_slides: travel.iter().any(|travel| *travel > MAX_STEP),
+            travel,
             simple: coordinates.iter().all(simple),
             turns: coordinates.iter().map(|&c| is_back_after_a_turn(mechanism, c)).collect(),
             lower: coordinates.iter().map(|&c| all[c].limits.lower).collect(),
@@ -192,9 +206,15 @@ impl Problem {
         }
     }
 
-    /// One step from `q`, which was evaluated with these errors.
-    pub(super) fn step(&mut self, q: &mut [f64], squared: f64) {
+    /// One step from `q`, which was evaluated with these errors; `squared` sets the damping.
+    fn step(&mut self, q: &mut [f64], Errors { position, squared, .. }: Errors) {
         self.load_jacobian();
+        if self.has_long_slides {
+            for (column, travel) in self.a.chunks_exact_mut(self.m.max(1)).zip(&self.travel) {
+                let unit = stretch(*travel, position);
+                column.iter_mut().for_each(|x| *x *= unit);
+            }
+        }
         let size = self.a.iter().map(|x| x * x).sum::<f64>();
         let damping = DAMPING * squared + MIN_DAMPING * size;
         self.clamped.copy_from_slice(&self.fixed);
@@ -207,6 +227,11 @@ impl Problem {
             if !self.clamp_at_limits(q) {
                 break;
             }
+        }
+        let most = max_abs(&self.d);
+        let cut = if most > MAX_STEP { MAX_STEP / most } else { 1.0 };
+        for (d, travel) in self.d.iter_mut().zip(&self.travel) {
+            *d *= cut * stretch(*travel, position);
         }
         self.advance(q);
     }
@@ -225,18 +250,17 @@ impl Problem {
         any
     }
 
+    /// Moves `q` by the step `d`, as far as the limits permit.
     pub(super) fn advance(&mut self, q: &mut [f64]) {
-        let most = max_abs(&self.d);
-        let cut = if most > MAX_STEP { MAX_STEP / most } else { 1.0 };
         if self.simple {
             for (i, &c) in self.coordinates.iter().enumerate() {
-                q[c] = clamp(q[c] + cut * self.d[i], self.lower[i], self.upper[i]);
+                q[c] = clamp(q[c] + self.d[i], self.lower[i], self.upper[i]);
             }
             return;
         }
         self.rates.fill(0.0);
         for (&c, d) in self.coordinates.iter().zip(&self.d) {
-            self.rates[c] = cut * d;
+            self.rates[c] = *d;
         }
         self.mechanism.integrate_in_place(q, &self.rates, 1.0);
         self.clamp(q);
@@ -266,7 +290,7 @@ impl Problem {
             if is_reached(errors, options) {
                 return (errors, steps);
             }
-            self.step(q, errors.squared);
+            self.step(q, errors);
             errors = self.evaluate(q);
             stagnation += 1;
             if errors.squared < 0.25 * best_error {
@@ -291,6 +315,8 @@ impl Problem {
                 rows: &goal.rows,
                 lower: &self.lower,
                 upper: &self.upper,
+                travel: &self.travel,
+                has_long_slides: self.has_long_slides,
                 fixed: &self.fixed,
                 options,
                 max_steps: 0,
@@ -312,7 +338,7 @@ impl Problem {
         let (mut next, mut extra) = (q.to_vec(), 1.0);
         for _ in 0..most {
             next.copy_from_slice(q);
-            self.step(&mut next, extra * errors.squared);
+            self.step(&mut next, Errors { squared: extra * errors.squared, ..errors });
             let then = self.evaluate(&next);
             if then.squared < errors.squared {
                 let little = then.squared > errors.squared * (1.0 - 1e-12);

@@ -45,6 +45,7 @@ mod nearest;
 mod options;
 mod parallel_restarts;
 mod reason;
+mod sampling;
 mod self_motion;
 mod solution;
 mod solve;

@@ -9,7 +9,9 @@
 //!          every processor, so that solutions depend on it only by rounding
 //! Checked  src/ik/levenberg_marquardt.rs (against single restarts), tests/it/ik.rs
 
-use super::convergence::{DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached};
+use super::convergence::{
+    DAMPING, Errors, MAX_STAGNATION, MAX_STEP, MIN_DAMPING, is_reached, stretch,
+};
 use super::options::IkOptions;
 use crate::kinematics::Serial;
 use crate::kinematics::serial_batched::{self, FrameAtTip, SinCos, tool_offset};
@@ -35,6 +37,9 @@ pub(super) struct BatchedProblem<'a> {
     pub(super) rows: &'a [(usize, f64)],
     pub(super) lower: &'a [f64],
     pub(super) upper: &'a [f64],
+    /// Travel of slides (m), otherwise 0; true if one of them is longer than a step.
+    pub(super) travel: &'a [f64],
+    pub(super) has_long_slides: bool,
     /// Coordinates that keep their values.
     pub(super) fixed: &'a [bool],
     pub(super) options: &'a IkOptions,
@@ -127,6 +132,7 @@ pub(super) fn solve_with<R: SimdFloat>(
         ([zero; MAX_COORDINATES], [zero; MAX_COORDINATES], [zero; MAX_COORDINATES]);
     let mut rows = [zero; 6 * MAX_COORDINATES];
     let (mut a, mut e, mut d) = ([zero; 6 * MAX_COORDINATES], [zero; 6], [zero; MAX_COORDINATES]);
+    let mut units = [R::splat(1.0); MAX_COORDINATES];
     for step in 0.. {
         for (i, joint) in joints.iter().enumerate() {
             x[i] = q[joint.coordinate];
@@ -155,8 +161,15 @@ pub(super) fn solve_with<R: SimdFloat>(
         }
         let m = batched.rows.len();
         rates(batched, &x, &turned, rows, &mut a[..m * n]);
+        if batched.has_long_slides {
+            for (c, (unit, travel)) in units.iter_mut().zip(batched.travel).enumerate() {
+                *unit = R::from_fn(|l| stretch(*travel, restarts[l].errors.position));
+                a[c * m..(c + 1) * m].iter_mut().for_each(|x| *x = *x * *unit);
+            }
+        }
         let damping = damping(&a[..m * n], R::load(&squares));
-        step_within(batched, &mut a[..m * n], &e[..m], damping, &mut d[..n], &mut q[..n]);
+        let (a, e) = (&mut a[..m * n], &e[..m]);
+        step_within(batched, (a, e), damping, &units[..n], &mut d[..n], &mut q[..n]);
     }
 }
 
@@ -233,13 +246,13 @@ fn damping<R: SimdFloat>(a: &[R], squared: R) -> R {
 }
 
 /// One step of each restart; joints that would leave their limits are clamped: their columns in `a`
-/// become zero.
+/// become zero. `d` is in these units.
 #[inline(always)]
 fn step_within<R: SimdFloat>(
     batched: &BatchedProblem<'_>,
-    a: &mut [R],
-    e: &[R],
+    (a, e): (&mut [R], &[R]),
     damping: R,
+    units: &[R],
     d: &mut [R],
     q: &mut [R],
 ) {
@@ -280,7 +293,7 @@ fn step_within<R: SimdFloat>(
     }
     let cut = R::select_lt(k(MAX_STEP), most, k(MAX_STEP) / most, one);
     for c in 0..n {
-        let there = cut.mul_add(d[c], q[c]);
+        let there = cut.mul_add(d[c] * units[c], q[c]);
         let (lower, upper) = (k(batched.lower[c]), k(batched.upper[c]));
         let there = R::select_lt(there, lower, lower, R::select_lt(upper, there, upper, there));
         // Where the matrix is not positive definite there is no step.

@@ -13,10 +13,10 @@
 //! Checked  tests/it/ik.rs::the_nearest_answer, src/ik/nearest.rs, tests/it/ik_criteria.rs
 
 use super::ascent::Ascent;
-use super::convergence::is_reached;
+use super::convergence::{is_reached, stretch};
 use super::levenberg_marquardt::Problem;
 use super::options::IkOptions;
-use crate::linalg::{DampedProblem, dot, max_abs};
+use crate::linalg::{DampedProblem, dot};
 use crate::scalar::clamp;
 
 /// Largest number of steps.
@@ -28,7 +28,7 @@ const FIRST_SHARE: f64 = 0.5;
 /// Range of the step length, and the factor after a step that does not decrease the cost.
 const SHARES: (f64, f64) = (1e-3, 8.0);
 const SHORTER: f64 = 0.25;
-/// Largest change of a coordinate per step [rad, or lengths].
+/// Largest change of a coordinate per step [rad, or m; of long slides a share of their travel].
 const LONGEST: f64 = 0.6;
 /// The descent ends where |d|^2 is below this share of the squared distance; of a criterion, of 1.
 const FLAT: f64 = 1e-9;
@@ -151,7 +151,7 @@ impl Descent {
                     return;
                 }
             }
-            let most = max_abs(&problem.d);
+            let most = problem.largest_change();
             share = share.min(LONGEST / most);
             self.last_d.copy_from_slice(&problem.d);
             for (last, &c) in self.last_q.iter_mut().zip(&problem.coordinates) {
@@ -261,6 +261,14 @@ impl Descent {
 }
 
 impl Problem {
+    /// The largest change of a coordinate in the step `d` [rad, or m], that of a long slide divided by
+    /// its travel in steps, of one without limits 0: the distance that other coordinates make up for
+    /// bounds it.
+    pub(super) fn largest_change(&self) -> f64 {
+        let changes = self.d.iter().zip(&self.travel);
+        changes.fold(0.0, |most, (d, t)| most.max(d.abs() / stretch(*t, f64::INFINITY)))
+    }
+
     /// Squared distance of two configurations over the coordinates that move the end effectors.
     pub(super) fn squared_distance(&self, a: &[f64], b: &[f64]) -> f64 {
         self.coordinates.iter().map(|&c| (a[c] - b[c]).powi(2)).sum()

@@ -2,9 +2,8 @@
 //!
 //! Method   the closed form first, if the geometry of the arm permits it. Otherwise, or if further
 //!          solutions may exist, a numerical solver with random restarts: the first starts at the
-//!          initial guess, the others at configurations sampled uniformly within the limits (in
-//!          [-pi, pi] without limits, or for joints that return to the same pose after a full
-//!          turn), identical in every run, four at once if possible (`parallel_restarts.rs`). A
+//!          initial guess, the others at random configurations (`sampling.rs`), identical in every
+//!          run, four at once if possible (`parallel_restarts.rs`). A
 //!          result is a solution if it is within the limits, and within tolerance by forward
 //!          kinematics. The search ends with the budget; earlier if the closed form leaves no
 //!          solution, or its samples for seven joints leave none but on short branches
@@ -13,7 +12,6 @@
 //! Source   random restarts: Beeson & Ames 2015 (TRAC-IK)
 //! Checked  tests/it/ik.rs
 
-use std::f64::consts::PI;
 use std::time::Instant;
 
 use super::analytic::Analytic;
@@ -31,8 +29,6 @@ use super::solution::{Candidate, FoundBy, Solution};
 use crate::closure::check_coordinates;
 use crate::error::Result;
 use crate::model::Mechanism;
-use crate::scalar::{clamp, uniform};
-use crate::tolerance;
 
 /// Iteration limit of one restart.
 pub(crate) const ITERATIONS_PER_RESTART: usize = 60;
@@ -41,8 +37,6 @@ const MAX_RESTARTS_AFTER_FIRST: usize = 48;
 /// Restarts without a solution before all branches of the closed form of a redundant arm are
 /// sampled.
 const RESTARTS_BEFORE_SAMPLES: usize = 64;
-/// Largest perturbation of the initial guess for every second of them [rad, lengths].
-const PERTURBATION: f64 = 1.0;
 
 /// A solver of inverse kinematics for one mechanism and its end effectors, to be reused in a loop:
 /// restarts do not allocate; further calls allocate only the solutions and the workspace for the
@@ -75,6 +69,9 @@ pub struct Solver {
     pub(super) start: Vec<f64>,
     /// The configuration from which distances are measured: the initial guess, or the posture.
     pub(super) preferred: Vec<f64>,
+    /// Distance of the targets of the current search from their frames at the initial guess (m), 0
+    /// where no slide is long.
+    pub(super) from_goals: f64,
     pub(super) descent: Descent,
     pub(super) ascent: Option<Ascent>,
     pub(super) avoidance: Option<Avoidance>,
@@ -158,6 +155,7 @@ impl Solver {
             options: IkOptions { nearest, ..options.clone() },
             preferred: start.clone(),
             start,
+            from_goals: 0.0,
             descent,
             ascent,
             avoidance: None,
@@ -263,6 +261,10 @@ impl Solver {
         check_all(&self.problem.mechanism, goals)?;
         self.problem.set_goals(goals)?;
         let out_of_reach = self.problem.out_of_reach();
+        self.from_goals = match self.problem.has_long_slides {
+            true => self.problem.evaluate(&self.start).position,
+            false => 0.0,
+        };
         if let Some(avoidance) = &mut self.avoidance {
             avoidance.best = None;
         }
@@ -480,19 +482,5 @@ impl Solver {
             );
         }
         restarts.iter().map(|r| r.steps).sum()
-    }
-
-    /// A random configuration within the limits, anywhere or near the initial guess.
-    pub(super) fn sample_configuration(&self, q: &mut [f64], near: bool, random: &mut u64) {
-        let p = &self.problem;
-        for (i, &c) in p.coordinates.iter().enumerate().filter(|(i, _)| !p.fixed[*i]) {
-            let bounded = p.upper[i] - p.lower[i] <= tolerance::WIDEST_RANGE;
-            let anywhere = if bounded && !p.turns[i] { f64::INFINITY } else { PI };
-            let (middle, spread) =
-                if near { (self.preferred[c], PERTURBATION) } else { (0.0, anywhere) };
-            let (lower, upper) = (p.lower[i].max(middle - spread), p.upper[i].min(middle + spread));
-            // Limits outside the sampling range leave one end of it.
-            q[c] = clamp(lower + (upper - lower) * uniform(random), p.lower[i], p.upper[i]);
-        }
     }
 }

@@ -18,6 +18,7 @@ mod ik_criteria;
 mod ik_goals;
 mod ik_half_spaces;
 mod ik_invariance;
+mod ik_long_slides;
 mod ik_misses;
 mod ik_wide_limits;
 mod inverse;
