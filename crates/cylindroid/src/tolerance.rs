@@ -1,9 +1,10 @@
 //! Tolerances: every threshold of the library, named, with its unit and derivation.
 //!
-//! Users see them as options with these values as defaults. Code never compares with a literal
-//! number.
+//! Users see them as defaults of options. Code never compares with a literal number.
 //!
 //! Checked  tests/it/ (by the tests of the code that uses them)
+
+use std::ops::RangeInclusive;
 
 /// Below this angle (rad) the coefficients of exp, log and their derivatives use Taylor series.
 ///
@@ -16,8 +17,7 @@ pub const SMALL_ANGLE: f64 = 0.5;
 /// uses six terms of a series for the arc tangent, for speed alone: the seventh is below 1e-19.
 pub const SMALL_TANGENT: f64 = 1e-3;
 
-/// A rotation given as numbers must be orthonormal to this (largest entry of `R^T R - 1`). Files
-/// print six digits.
+/// Largest entry of `R^T R - 1` of a rotation given as numbers, which files print with six digits.
 pub const ORTHONORMAL: f64 = 1e-5;
 
 /// Position limits farther apart than this [rad or m] stand for none where configurations are drawn
@@ -31,6 +31,13 @@ pub const MAX_MAGNITUDE: f64 = 1e120;
 /// Lengths of a mechanism below this (m) are roundings: a hundredth of an atom's diameter. A mechanism
 /// of shorter lengths alone is refused: beside one radian or one metre per second they would be lost.
 pub const MIN_LENGTH: f64 = 1e-12;
+
+/// What a characteristic length can be (m).
+pub const LENGTHS: RangeInclusive<f64> = MIN_LENGTH..=MAX_MAGNITUDE;
+
+/// A characteristic length is within this factor of that of the mechanism [-]: beyond it, ranks of the
+/// constraints of mechanisms become those of roundings.
+pub const LENGTH_RATIO: f64 = 1e5;
 
 /// Longest length (m) of a mechanism that has none but what sums and sines of metres leave.
 pub const ROUNDED_LENGTHS: [f64; 2] = [f64::EPSILON / 64.0, 1e-15];
@@ -88,8 +95,7 @@ pub const LIMIT_MET: f64 = 1e-12;
 /// component is positive, so that rounding does not choose the direction.
 pub const HALF_TURN: f64 = 1e-9;
 
-/// Positions are known to this fraction of the largest of them [-]: a few roundings of each joint
-/// on the way.
+/// Positions are known to this fraction of the largest of them [-]: roundings of the joints before.
 pub const POSITION_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Axes that pass a common point within this fraction of the extent of their joints meet there, so
@@ -222,8 +228,7 @@ pub const MAX_FACETS: usize = 20_000;
 /// computation, which five soft fingers in a ring may need.
 pub const MAX_SIMPLICES: usize = 10_000_000;
 
-/// Final distance of the bounds of a grasp's quality, relative to the largest difference of two of
-/// its wrenches [-].
+/// Final distance of the bounds of a grasp's quality, over the largest difference of its wrenches [-].
 pub const GRASP_QUALITY: f64 = 1e-3;
 
 /// An eigenvalue of an admittance, divided by the roots of its diagonal, may be this much below
@@ -235,8 +240,7 @@ pub const PASSIVE: f64 = 1e-9;
 pub const CLOSED: f64 = 1e-10;
 
 /// Directions in which a constraint is weaker than this, relative to its strongest, are excluded
-/// from loop closure: near a singular configuration the step there would be the largest, and
-/// diverge [-].
+/// from loop closure: near a singular configuration the largest step would be there [-].
 pub const CORRECTION_RANK: f64 = 1e-6;
 
 /// A motion with less than this share in the actuated joints (of a motion of length one in units
@@ -245,8 +249,7 @@ pub const CORRECTION_RANK: f64 = 1e-6;
 pub const MIN_ACTUATED_SHARE: f64 = 1e-2;
 
 /// Loops whose closure error is less than this times the characteristic length, and less than this
-/// in angle (rad), are closed by a servo during its motion, as measured configurations need; others
-/// must be assembled first.
+/// in angle (rad), are closed by a servo as it moves, for measured configurations: others by assembly.
 pub const NEARLY_CLOSED: f64 = 1e-2;
 
 /// Joint velocities clamped at bounds that follow from each other, or contradict each other, by
@@ -291,15 +294,13 @@ pub const BRANCH_SPREAD: f64 = 0.1;
 /// configuration is not followed further [-].
 pub const BRANCH_TURN: f64 = 0.9;
 
-/// Motions whose part outside all branches is below this belong to them [-], as
-/// [`SAME_BRANCH`].
+/// Motions whose part outside all branches is below this belong to them [-].
 pub const WITHIN_BRANCHES: f64 = 1e-3;
 
 /// Accuracy of the limit of generic spaces, taken from nearby configurations [-].
 pub const GENERIC_LIMIT: f64 = 1e-6;
 
-/// A joint whose share in motions of length one is below this is at rest [-]: above the error of
-/// [`GENERIC_LIMIT`] on zero.
+/// A joint whose share in motions of length one is below this is at rest [-], for their generic limit.
 pub const JOINT_AT_REST: f64 = 1e-5;
 
 /// Position error at which inverse kinematics counts a target as reached, by default (m): what
@@ -392,8 +393,7 @@ pub const SYMMETRIC: f64 = 1e-9;
 pub const SAME_SHAKY: f64 = 0.05;
 
 /// Smallest ratio of the singular values kept at which an assembly from a restart has a clear rank
-/// [-]: at a singular configuration the position of an assembly is accurate to the root of
-/// rounding.
+/// [-]: at a singular configuration assemblies are accurate to the root of rounding.
 pub const CLEAR_SAMPLE: f64 = 1e-5;
 
 /// Links that a trial step by 0.05 moves by less than this have come back to where they were, in
@@ -413,8 +413,7 @@ pub const LEAST_PATH_SINGULAR: f64 = 1e-5;
 /// workspace the square of it is the distance left, in characteristic lengths.
 pub const PLATFORM_SINGULAR: f64 = 1e-4;
 
-/// Residual of loops and of what vanishes on a singularity locus, at its points [-]: ten to a hundred
-/// roundings.
+/// Residual of loops and of what vanishes on a singularity locus, at its points [-]: 100 roundings.
 pub const LOCUS_MET: f64 = 1e-12;
 
 /// Relative singular value of the equations of a locus [-] below which its points have a neighbour in
@@ -444,8 +443,7 @@ pub const CONTRADICTION: f64 = 1e-6;
 pub const SHARE_FOUND: f64 = 1e-12;
 
 /// Rates that differ by less than this, relative to their size, are the same: above the rounding of
-/// two inverses of one Jacobian that is a thousand times from singular, far below what a reference
-/// point a millimetre away changes [-].
+/// two inverses of one Jacobian, far below what a reference point a millimetre away changes [-].
 pub const SAME_RATES: f64 = 1e-9;
 
 /// A new simplex that improves an index by less than this share of it ends its refinement [-]: a
@@ -485,8 +483,10 @@ pub const ZERO_SEPARATION: f64 = 1e-14;
 /// distance: the reciprocal of a smaller size, times a distance, squared, is not finite.
 pub const NO_EXTENT: f64 = 1e-30;
 
-/// Share by which the radius of a fitted capsule exceeds that of the smallest circle, against
-/// rounding [-].
+/// A point beyond a convex hull by less than this times its size is on it [-].
+pub const HULL_ROUNDING: f64 = 1e-12;
+
+/// Share by which the radius of a fitted capsule exceeds the smallest circle's, for rounding [-].
 pub const CAPSULE_ENLARGED: f64 = 1e-12;
 
 /// Default distance above which a pair of shapes counts as one that never touches (m).

@@ -80,6 +80,9 @@ fn unbounded(geometry: &Geometry, meshes: MeshShape) -> Result<(Convex, Pose), S
         }
         Geometry::Ellipsoid { radii } => {
             lengths(&radii.to_array())?;
+            if radii.x == radii.y && radii.y == radii.z {
+                return centered(Core::Point, radii.x);
+            }
             centered(Core::Ellipsoid { radii: *radii }, 0.0)
         }
         Geometry::HalfSpace => centered(Core::HalfSpace, 0.0),

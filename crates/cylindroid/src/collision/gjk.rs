@@ -7,7 +7,9 @@
 //! Units    the sum of the radii of both cores is one, so that no threshold depends on the scale;
 //!          metres where it is zero to [`NO_EXTENT`]
 //! Valid    bounded cores; the distance is exact to [`GJK_GAP`], the depth to [`DEPTH_GAP`], of that
-//!          sum
+//!          sum. Where curved cores lie around one place, the depth is the least one that descents
+//!          from some facets find (`depth.rs`): a translation by it separates them, and in the tests
+//!          none is shorter by more than that
 //! Fails    never
 //! Why so   parry's GJK ends on curved shapes with 1e-5 of the distance, ours with the rounding; its
 //!          expanding polytope is fast and keeps its memory, but gives depth zero for boxes at one
@@ -24,9 +26,10 @@ use parry3d_f64::query::gjk::{self, CsoPoint, GJKResult, VoronoiSimplex};
 use parry3d_f64::shape::SupportMap;
 
 use super::convex::{Core, Placed};
+use super::depth::{least_extent, mixed};
 use super::separation::Separation;
 use super::simplex::{Simplex, Vertex};
-use crate::linalg::{Hull, HullGoal, HullOptions, Qr};
+use crate::linalg::{Facet, Hull, HullGoal, HullOptions, Qr};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::{DEPTH_GAP, GJK_GAP, NO_EXTENT, ZERO_SEPARATION};
 
@@ -36,6 +39,9 @@ const MAX_ITERATIONS: usize = 128;
 /// Facets of the expanding polytope at most: curved shapes at one place have countless ones that are
 /// nearly nearest.
 const MAX_DEPTH_FACETS: usize = 400;
+
+/// Descents from facets at most, where the polytope has that many.
+const MAX_DESCENTS: usize = 32;
 
 /// Scratch memory of the expanding polytope.
 pub(super) struct Gjk {
@@ -216,19 +222,22 @@ fn nearest_facet(difference: &Difference<'_>) -> Closest {
         max_facets: MAX_DEPTH_FACETS,
     };
     let hull = Hull::of(3, support, options);
-    let facet = hull.nearest_facet();
-    let corners = facet.map(|f| f.vertices.iter().map(|&i| hull.vertices[i].as_slice()));
-    let mut corners = corners.into_iter().flatten().filter_map(|corner| {
-        seen.iter().find(|v| v.point.to_array().as_slice() == corner).copied()
-    });
-    if let (Some(first), Some(facet)) = (corners.next(), facet.filter(|_| hull.span.cols() == 3)) {
-        let mut simplex = Simplex::new(first);
-        corners.for_each(|corner| {
-            simplex.add(corner);
-        });
-        let (p, q) = simplex.witnesses();
+    let facet = hull.nearest_facet().filter(|_| hull.span.cols() == 3);
+    if let Some(facet) = facet {
+        if !hull.complete
+            && let Some(found) = refined(difference, &hull, &mut seen)
+        {
+            return found;
+        }
+        let is_corner = |v: &Vertex| {
+            let at = |i: &usize| hull.vertices[*i].as_slice() == v.point.to_array().as_slice();
+            facet.vertices.iter().any(at)
+        };
+        let corners: Vec<Vertex> = seen.iter().copied().filter(is_corner).collect();
         let normal = Vec3::new(facet.normal[0], facet.normal[1], facet.normal[2]);
-        if let Some(found) = confirmed(difference, (p, q, normal), f64::INFINITY) {
+        if let Some((p, q)) = mixed(&corners, Vec3::ZERO)
+            && let Some(found) = confirmed(difference, (p, q, normal), f64::INFINITY)
+        {
             return found;
         }
     }
@@ -238,7 +247,37 @@ fn nearest_facet(difference: &Difference<'_>) -> Closest {
         0 => Vec3::X,
         _ => Vec3::new(across[(0, 0)], across[(1, 0)], across[(2, 0)]),
     };
-    let p = seen.iter().fold(Vec3::ZERO, |sum, v| sum + v.a) * (1.0 / seen.len().max(1) as f64);
-    let depth = normal.dot(difference.support(normal).point);
-    (p, p - normal * depth, normal)
+    let depth = |n: Vec3| n.dot(difference.support(n).point);
+    let normal = if depth(-normal) < depth(normal) { -normal } else { normal };
+    let p = mixed(&seen, Vec3::ZERO).map_or(Vec3::ZERO, |(p, _)| p);
+    (p, p - normal * depth(normal), normal)
+}
+
+/// The least extent of the difference, by descents from the facets of an unfinished hull
+/// along which it extends least.
+fn refined(difference: &Difference<'_>, hull: &Hull, seen: &mut Vec<Vertex>) -> Option<Closest> {
+    let start = |facet: &Facet| {
+        let normal = Vec3::new(facet.normal[0], facet.normal[1], facet.normal[2]);
+        let normal = normal.unit(ZERO_SEPARATION)?;
+        Some((normal, normal.dot(difference.support(normal).point)))
+    };
+    let mut starts: Vec<(Vec3, f64)> = hull.facets.iter().filter_map(start).collect();
+    starts.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let mut best: Option<(Vec3, f64)> = None;
+    for (normal, _) in starts.into_iter().take(MAX_DESCENTS) {
+        let support = |d: Vec3| {
+            let vertex = difference.support(d);
+            seen.push(vertex);
+            vertex.point
+        };
+        let found = least_extent(support, normal);
+        if best.is_none_or(|(_, depth)| found.1 < depth) {
+            best = Some(found);
+        }
+    }
+    let (normal, depth) = best?;
+    let near = |v: &&Vertex| v.point.dot(normal) >= depth - DEPTH_GAP;
+    let near: Vec<Vertex> = seen.iter().filter(near).copied().collect();
+    let (p, _) = mixed(&near, normal * depth)?;
+    Some((p, p - normal * depth, normal))
 }

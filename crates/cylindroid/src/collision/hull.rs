@@ -5,13 +5,12 @@
 //! Valid    also flat sets of points and fewer than four: their hull is then all of them
 //! Why so   a hull of a mesh has hundreds of vertices, a path over its edges a few; a local maximum
 //!          of a linear function on a convex polytope is a global one
-//! Source   van den Bergen 2003, section 4.3.4; hull by parry's quickhull
+//! Source   van den Bergen 2003, section 4.3.4; hull by `model/convex_hull.rs`
 //! Checked  tests/collision/laws.rs, tests in this file
 
-use parry3d_f64::math::Vector;
-use parry3d_f64::transformation::try_convex_hull;
-
+use crate::model::convex_hull::convex_hull;
 use crate::spatial::Vec3;
+use crate::tolerance::HULL_ROUNDING;
 
 /// Hulls of at most this many vertices are scanned: shorter than an ascent.
 const SCANNED: usize = 24;
@@ -49,7 +48,20 @@ impl Hull {
         };
         let axes = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z];
         let extremes = axes.map(farthest);
-        Some((Self { vertices, first, neighbours, extremes, bound }, center))
+        let mut hull = Self { vertices, first, neighbours, extremes, bound };
+        if !hull.ascends_to(&triangles) {
+            (hull.first, hull.neighbours) = (Vec::new(), Vec::new());
+        }
+        Some((hull, center))
+    }
+
+    /// Whether the ascent along the normals of all triangles reaches these.
+    fn ascends_to(&self, triangles: &[[u32; 3]]) -> bool {
+        triangles.iter().all(|t| {
+            let [a, b, c] = t.map(|i| self.vertices[i as usize]);
+            let Some(n) = (b - a).cross(c - a).unit(f64::MIN_POSITIVE) else { return true };
+            n.dot(a - self.support(n)) <= HULL_ROUNDING * self.bound
+        })
     }
 
     /// The vertices, relative to the centre.
@@ -98,7 +110,7 @@ impl Hull {
     }
 }
 
-/// Vertices and triangles of the hull; all points and no triangles for a flat set.
+/// Vertices and triangles of the hull; all points and no triangles where there is none.
 fn hull(points: &[Vec3]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut distinct: Vec<Vec3> = points.iter().copied().filter(|p| p.is_finite()).collect();
     let order = |a: &Vec3, b: &Vec3| {
@@ -109,12 +121,7 @@ fn hull(points: &[Vec3]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     if distinct.len() < 5 {
         return (distinct, Vec::new());
     }
-    let vectors: Vec<Vector> = distinct.iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-    let Ok((vertices, triangles)) = try_convex_hull(&vectors) else {
-        return (distinct, Vec::new());
-    };
-    let vertices = vertices.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect();
-    (vertices, triangles)
+    convex_hull(&distinct).unwrap_or((distinct, Vec::new()))
 }
 
 /// The neighbours of all vertices, in one list; empty where a scan is shorter.

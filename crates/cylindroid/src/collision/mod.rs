@@ -8,6 +8,7 @@ mod body;
 mod capsule_fit;
 mod closed_form;
 mod convex;
+mod depth;
 mod distance;
 mod gjk;
 mod gradient;

@@ -14,6 +14,7 @@ mod closure_frames;
 mod collada;
 mod constraint_wrenches;
 mod contact;
+pub(crate) mod convex_hull;
 mod coordinate_limit;
 mod curvature;
 mod default_tool;

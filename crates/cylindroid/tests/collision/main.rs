@@ -9,6 +9,7 @@
 )]
 
 mod coal;
+mod ellipsoids;
 mod files;
 mod gradient;
 mod laws;
@@ -17,3 +18,4 @@ mod shapes;
 #[allow(dead_code)] // of the helpers, a few are needed here
 #[path = "../it/support.rs"]
 mod support;
+mod thin;

@@ -8,13 +8,11 @@
 //!          hull, "shell" the triangles: areas for volumes, 1/12 for 1/20
 //! Units    of the vertices (m): V in m^3, or m^2 of a shell; I per kg in m^2
 //! Valid    "exact" for closed meshes whose triangles agree in their orientation
-//! Fails    `None` without triangles, or for a volume that is not positive
+//! Fails    `None` without triangles, without a hull that encloses all vertices, or for a volume that is not positive
 //! Source   mujoco.readthedocs.io, XML reference, asset/mesh/inertia; the integrals: Mirtich 1996
 //! Checked  tests/formats/mesh_masses.rs (against MuJoCo)
 
-use parry3d_f64::math::Vector;
-use parry3d_f64::transformation::try_convex_hull;
-
+use crate::model::convex_hull::convex_hull;
 use crate::model::mesh_file::MeshFile;
 use crate::spatial::{Mat3, Vec3};
 
@@ -52,9 +50,8 @@ pub(super) fn solid(mesh: MeshFile, scale: Vec3, kind: MeshInertia) -> Option<So
     let mut vertices: Vec<Vec3> = mesh.vertices.into_iter().map(scaled).collect();
     let mut triangles = mesh.triangles.unwrap_or_default();
     if kind == MeshInertia::Convex {
-        let points: Vec<Vector> = vertices.iter().map(|v| Vector::new(v.x, v.y, v.z)).collect();
-        let (hull, faces) = try_convex_hull(&points).ok()?;
-        vertices = hull.iter().map(|v| Vec3::new(v.x, v.y, v.z)).collect();
+        let faces;
+        (vertices, faces) = convex_hull(&vertices)?;
         triangles = faces.iter().map(|f| f.map(|i| i as usize)).collect();
     }
     let corners = triangles.iter().map(|t| t.map(|i| vertices[i]));
