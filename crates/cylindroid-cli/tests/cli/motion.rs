@@ -208,6 +208,17 @@ fn a_stall_at_limits_goes_round_or_offers_another_posture() {
     json(&[&command[..], &["--q", &q.join(",")]].concat(), 0);
 }
 
+/// The joint motion of a reconfiguration keeps --speed: it took 2.9 s and 0.6 s before.
+#[test]
+fn a_reconfiguration_keeps_the_speed_of_the_tool() {
+    let report = json(&["move", "puma560", "--to", "-0.5,0.2,0.3", "--speed", "0.05"], 0);
+    assert_eq!(report["reconfigured"], true);
+    assert!(report["time"].as_f64().unwrap() > 20.0, "{report}");
+    let crawl = ["move", "panda", "--to", "0.45,0.15,0.35", "--speed=1e-300", "--time-limit", "5"];
+    let report = json(&crawl, 1);
+    assert_eq!((&report["reached"], &report["reason"]), (&false.into(), &"time-limit".into()));
+}
+
 /// A pose that the youBot reaches, its tool 25 degrees below the horizontal.
 const BELOW: [&str; 4] =
     ["--to", "0.416601,0.176136,0.192563", "--quaternion", "0.513313,-0.0841979,0.83917,0.158786"];

@@ -129,7 +129,8 @@ fn perform(job: &Job, mut trajectory: Option<&mut Trajectory>) -> anyhow::Result
         return direct(Way::Offered { configuration });
     }
     // Again from the start, straight through joint space: the stalled motion is not executed.
-    let motion = JointMove::within_limits(&job.robot, &job.start, &configuration, &job.defaults)?;
+    let motion = JointMove::within_limits(&job.robot, &job.start, &configuration, &job.defaults)?
+        .within_tool_speed(&job.robot, job.options.end_effector, job.options.speed)?;
     if let Some(trajectory) = &mut trajectory {
         trajectory.clear();
     }

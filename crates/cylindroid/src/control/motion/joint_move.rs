@@ -13,8 +13,23 @@
 
 use super::path::within;
 use super::time_law::{KinematicBounds, LawSample, TimeLaw};
+use crate::control::servo::SpeedLimit;
 use crate::error::{Error, Result};
+use crate::kinematics::{Chain, EndEffector, ReferenceFrame};
+use crate::linalg::{Matrix, norm};
 use crate::model::{CoordinateKind, Mechanism};
+use crate::scalar::clamp;
+
+/// Sum of the turns of all joints between two places at which the speed of the tool is computed (rad), and
+/// number of these places.
+const TURN: f64 = 0.01;
+const PLACES: (f64, f64) = (100.0, 1e5);
+
+/// Share by which the tool may be faster between two of them [-].
+const BETWEEN: f64 = 1e-3;
+
+/// The longest duration of a move (s): sums of a few do not overflow.
+const LONGEST: f64 = 1e307;
 
 /// The straight motion of all joints from one configuration to another, over s in [0, 1].
 #[derive(Debug, Clone, PartialEq)]
@@ -210,6 +225,71 @@ impl JointMove {
     /// A duration shorter than that of the move, or not finite.
     pub fn scaled_to_duration(self, duration: f64) -> Result<Self> {
         Ok(Self { law: self.law.scaled_to_duration(duration)?, ..self })
+    }
+
+    /// The same move slowed down, if need be, such that the tool keeps its largest speeds: the duration
+    /// grows as they shrink.
+    ///
+    /// ```
+    /// use cylindroid::control::{JointDefaults, JointMove, KinematicBounds, SpeedLimit};
+    ///
+    /// let robot = cylindroid::load("ur5e")?;
+    /// let default = KinematicBounds { velocity: 1.0, acceleration: 4.0, jerk: 40.0 };
+    /// let defaults = JointDefaults { angle: default, length: default };
+    /// let to = [0.5, -1.0, 1.2, 0.3, 0.4, 0.5];
+    /// let motion = JointMove::within_limits(&robot, robot.home(), &to, &defaults)?;
+    /// let speed = SpeedLimit { linear: 0.05, angular: f64::INFINITY };
+    /// let slow = motion.clone().within_tool_speed(&robot, robot.tool(), speed)?;
+    /// assert!(slow.law().duration() > 2.0 * motion.law().duration());
+    /// # Ok::<(), cylindroid::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A path or a frame of another mechanism.
+    pub fn within_tool_speed(
+        self,
+        mechanism: &Mechanism,
+        end_effector: impl Into<EndEffector>,
+        speed: SpeedLimit,
+    ) -> Result<Self> {
+        if speed.linear == f64::INFINITY && speed.angular == f64::INFINITY {
+            return Ok(self);
+        }
+        let (duration, fastest) = (self.law.duration(), self.law.extrema().velocity);
+        let excess = fastest * self.largest_speed(mechanism, end_effector.into(), speed)?;
+        if !(excess > 1.0) {
+            return Ok(self);
+        }
+        self.scaled_to_duration((duration * excess).min(LONGEST.max(duration)))
+    }
+
+    /// The largest speed of the tool where s' = 1, over the speeds that it may have (s).
+    fn largest_speed(
+        &self,
+        mechanism: &Mechanism,
+        end_effector: EndEffector,
+        speed: SpeedLimit,
+    ) -> Result<f64> {
+        let (path, d) = (&self.path, self.path.displacement());
+        mechanism.check_q("displacement of the joint path", d)?;
+        let mut chain = Chain::new(mechanism, end_effector)?;
+        let own: Vec<f64> = chain.coordinates().iter().map(|&c| d[c]).collect();
+        let turns = chain.coordinates().iter().zip(&own);
+        let turns =
+            turns.filter(|(c, _)| mechanism.coordinates()[**c].kind == CoordinateKind::Angle);
+        let turn: f64 = turns.map(|(_, d)| d.abs()).sum();
+        let places = clamp((turn / TURN).ceil(), PLACES.0, PLACES.1);
+        let (mut jacobian, mut twist) = (Matrix::zeros(6, chain.n()), [0.0; 6]);
+        let (mut q, mut most) = (vec![0.0; path.dof()], 0.0_f64);
+        for place in 0..=places as u32 {
+            path.position_into(f64::from(place) / places, &mut q)?;
+            chain.set(&q);
+            chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut jacobian);
+            jacobian.mul_vec_into(&own, &mut twist);
+            let (linear, angular) = twist.split_at(3);
+            most = most.max(norm(linear) / speed.linear).max(norm(angular) / speed.angular);
+        }
+        Ok(most * (1.0 + BETWEEN))
     }
 
     /// The path.

@@ -22,6 +22,7 @@ mod escaping;
 mod generic_rank;
 mod moving_target;
 mod stages;
+mod tool_speed;
 mod tracking;
 mod turning_back;
 mod velocity_mode;

@@ -88,6 +88,16 @@ impl TaskSpace {
         }
     }
 
+    /// Computes the unscaled Jacobian of all six components, world axes at the tool: [`Self::whole`].
+    pub(super) fn load_whole(&mut self, chain: &Chain) {
+        chain.jacobian_into(ReferenceFrame::LocalWorldAligned, &mut self.jacobian);
+    }
+
+    /// The unscaled Jacobian, 6 x n.
+    pub(super) fn whole(&self) -> &Matrix {
+        &self.jacobian
+    }
+
     /// The velocity of joint i in scaled coordinates; 0 if it is locked.
     pub(super) fn scaled_rate(&self, i: usize, rate: f64) -> f64 {
         scaled(rate, self.columns[i])

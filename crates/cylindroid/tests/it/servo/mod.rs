@@ -33,6 +33,7 @@ mod task_kinds;
 mod task_reports;
 mod task_twist;
 mod tasks;
+mod tool_speed;
 mod twist;
 mod weak_postures;
 

@@ -30,6 +30,7 @@ impl Servo {
         } else {
             slows = self.brake_in_time(q);
         }
+        self.keep_speed();
         let braking = self.store_rates();
         if let Some(escape) = &mut self.escape {
             match share {

@@ -268,7 +268,7 @@ impl Servo {
             let now = JointState { position: q[c], velocity: self.rates[c], acceleration: 0.0 };
             clear &= margin.allows(now, (primary + secondary) * column);
         }
-        if !clear || self.will_turn_back(q) {
+        if !clear || self.will_turn_back(q) || self.exceeds_speed() {
             return None;
         }
         let scaled = self.primary.iter_mut().zip(&self.secondary).zip(&self.space.columns);
