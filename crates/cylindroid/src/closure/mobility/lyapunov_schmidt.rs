@@ -26,6 +26,10 @@ use crate::tolerance::{LOOP_ROUNDING, POSITION_ROUNDING};
 /// Maximum number of Newton steps: four are usual.
 const MAX_STEPS: usize = 30;
 
+/// Steps below the tolerance at most: entries without rounding, at round coordinates, would converge on
+/// slowly far below it.
+const POLISHED: usize = 2;
+
 /// The reduction at a configuration, with the spaces of its first order.
 pub(crate) struct LyapunovSchmidt<'a> {
     mechanism: &'a Mechanism,
@@ -168,14 +172,16 @@ impl<'a> LyapunovSchmidt<'a> {
     /// method does not converge.
     pub(crate) fn step_from(&self, from: &[f64], x: &[f64]) -> Result<Option<ReducedPoint>> {
         let mut q = self.moved(from, &self.kernel.mul_vec(x));
-        let mut last = f64::INFINITY;
+        let (mut last, mut within) = (f64::INFINITY, 0);
         for _ in 0..MAX_STEPS {
             let now = LoopClosure::at(self.mechanism, &q, &self.free, self.length)?;
             let open = self.range.transpose().mul_vec(&now.residuals);
             let error = norm(&open);
             let complement =
                 Qr::plain(&self.range.transpose() * &(&now.jacobian * &self.complement));
-            if error <= self.tolerance && !(error < 0.5 * last) || error == 0.0 {
+            within += usize::from(error <= self.tolerance);
+            let is_settled = !(error < 0.5 * last) || within > POLISHED;
+            if error <= self.tolerance && is_settled || error == 0.0 {
                 let along = &now.jacobian * &self.kernel;
                 let follow = complement.solve(&self.range.transpose() * &along);
                 let swept = &now.jacobian * &(&self.complement * &follow);
