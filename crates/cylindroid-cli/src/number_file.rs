@@ -183,7 +183,12 @@ fn read_columns(
                     cannot_read(path, &format!("no column '{name}' among {known}"))
                 })
             };
-            names.iter().map(place).collect::<Result<_>>()?
+            let places: Vec<usize> = names.iter().map(place).collect::<Result<_>>()?;
+            let twice = |i: &&usize| columns.iter().filter(|c| **c == columns[**i]).count() > 1;
+            if let Some(&i) = places.iter().find(twice) {
+                return Err(cannot_read(path, &format!("column '{}' is given twice", columns[i])));
+            }
+            places
         }
     };
     table.check_numbers(path, |column| places.contains(&column))?;

@@ -252,7 +252,14 @@ impl Joints {
             Self::All(list) => Ok(list.iter().enumerate().map(|(i, v)| si(i, *v)).collect()),
             Self::Some(pairs) => {
                 let mut q = rest.to_vec();
-                for (name, value) in pairs {
+                for (place, (name, value)) in pairs.iter().enumerate() {
+                    if pairs[..place].iter().any(|(other, _)| other == name) {
+                        return Err(Error::InvalidOption {
+                            option: "joints",
+                            value: name.clone(),
+                            reason: "it is given twice".to_owned(),
+                        });
+                    }
                     let i = coordinates.iter().position(|c| c.name == *name).ok_or_else(|| {
                         Error::unknown("joint", name, coordinates.iter().map(|c| &c.name))
                     })?;

@@ -6,7 +6,7 @@
 //!
 //! Checked  tests in this file, tests/formats/broken.rs
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
 /// Result of every fallible function of the library.
@@ -169,6 +169,22 @@ impl Error {
         })
     }
 
+    /// Returns an error for an option that is not within this range, NaN included.
+    pub fn check_range(
+        option: &'static str,
+        value: f64,
+        range: &RangeInclusive<f64>,
+    ) -> Result<()> {
+        if range.contains(&value) {
+            return Ok(());
+        }
+        Err(Self::InvalidOption {
+            option,
+            value: number_text(value),
+            reason: format!("it must be from {:e} to {:e}", range.start(), range.end()),
+        })
+    }
+
     /// A size that is not `each` numbers for each configuration.
     pub(crate) fn rows(what: &str, expected: usize, got: usize, each: usize) -> Self {
         let hint = format!("{each} for each configuration");
@@ -244,6 +260,12 @@ pub(crate) fn shown(path: &Path) -> String {
         chunk.invalid().iter().for_each(|byte| text.push_str(&format!("\\x{byte:02x}")));
     }
     text
+}
+
+/// A number for a message: without rows of zeros.
+pub(crate) fn number_text(value: f64) -> String {
+    let is_usual = value == 0.0 || (1e-4..1e16).contains(&value.abs());
+    if is_usual { value.to_string() } else { format!("{value:e}") }
 }
 
 /// True if no number is NaN or infinite (zero times it is zero). Eight independent sums, for speed.

@@ -129,6 +129,7 @@ pub(crate) struct AssembleArgs {
     /// Smallest accepted distance of --to to a singularity [-]: smallest over largest singular value
     /// of the loop Jacobian with respect to the free coordinates, 1e-5 to 1 [default: 0.001]
     #[arg(long, value_name = "D", allow_hyphen_values = true, requires = "to")]
+    #[arg(conflicts_with = "modes")]
     pub(crate) least_distance: Option<f64>,
 }
 

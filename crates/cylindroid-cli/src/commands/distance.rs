@@ -76,7 +76,9 @@ pub(crate) fn run(args: &DistanceArgs, style: Style, out: &mut dyn Write) -> any
         collision_model(&robot, &args.collision, args.configuration.model.srdf.as_deref())?;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let mut near: Vec<NearPair> = Vec::new();
-    model.near(&state, args.margin.max(0.0), &mut near)?;
+    // Pairs that touch decide on the answer, whatever is asked for.
+    let margin = if args.margin < 0.0 { 0.0 } else { args.margin };
+    model.near(&state, margin, &mut near)?;
     let free = near.iter().all(|n| n.distance >= 0.0);
     near.retain(|n| n.distance <= args.margin);
     near.sort_by(|a, b| a.distance.total_cmp(&b.distance));

@@ -3,6 +3,7 @@
 use cylindroid::model::Mechanism;
 use cylindroid::model::formats::srdf;
 use cylindroid::model::formats::toml::with_limits_of_file;
+use cylindroid::tolerance::MAX_MAGNITUDE;
 use cylindroid::{EndEffector, Error, ParametricModel, Pose, Vec3};
 
 use crate::args::{ConfigurationArgs, FrameArgs, LimitsArgs, ModelArgs};
@@ -83,7 +84,7 @@ pub(crate) fn end_effector(robot: &Mechanism, args: &FrameArgs) -> cylindroid::R
         Some(name) => robot.frame(name)?,
     };
     let tool = args.tool.map_or([0.0; 3], |t| t.0);
-    Error::check_finite("--tool", &tool)?;
+    Error::check_within("--tool", &tool, MAX_MAGNITUDE)?;
     Ok(EndEffector { frame, frame_from_tool: Pose::from_translation(Vec3::from_array(tool)) })
 }
 

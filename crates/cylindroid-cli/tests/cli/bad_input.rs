@@ -288,6 +288,68 @@ fn zero_joints_are_a_size() {
     }
 }
 
+/// Numbers with which nothing can be said of a robot.
+#[test]
+fn lengths_margins_and_twists_have_sizes() {
+    for command in ["mobility", "manipulability", "grasp"] {
+        refused(&[command, "two-arm", "--length", "1e-300"], "--length = 1e-300");
+    }
+    let wrench = ["statics", "two-arm", "--wrench", "0,0,1,0,0,0", "--length", "1e-300"];
+    refused(&wrench, "--length = 1e-300");
+    let length = "--length = 1e99 cannot be used: that of 'five-bar' is";
+    refused(&["mobility", "five-bar", "--length", "1e99"], length);
+    refused(&["screws", "panda", "--length", "1e-13"], "it must be from 1e-12 to 1e120");
+    refused(&["screws", "panda", "--center", "0,0,1e121"], "--center[2] = 1e121");
+    refused(&["distance", "3rrr", "--margin", "nan"], "--margin = NaN");
+    let twist = "0,0,1e300,0,0,1";
+    refused(&["screws", "panda", "--twist", twist], "--twist[2] = 1e300");
+    refused(&["jacobian", "panda", "--twist", twist], "--twist[2] = 1e300");
+    refused(&["statics", "panda", "--wrench", twist], "--wrench[2] = 1e300");
+    let limits = "1e-200,1e-200";
+    refused(&["manipulability", "five-bar", "--velocity-limits", limits], "1e-120 to 1e120");
+    let both = ["assemble", "stewart", "--modes", "5", "--least-distance", "0.1"];
+    refused(&both, "cannot be used with");
+}
+
+/// What is out of range, or said twice.
+#[test]
+fn options_have_ranges() {
+    refused(&["fk", "panda", "--tool", "1e200,0,0"], "--tool[0] = 1e200");
+    refused(&["sweep", "panda", "--samples", "3", "--tool", "1e200,0,0"], "--tool[0] = 1e200");
+    refused(&["fk", "3r", "--q", "joint1=1,joint1=2"], "joint1 cannot be used: it is given twice");
+    refused_move(&["--time-constant", "1e14"], "it must be at most 1e6 steps");
+    let folder = tempfile::tempdir().unwrap();
+    let tasks = folder.path().join("tasks.toml");
+    let tasks = tasks.to_str().unwrap();
+    for (key, says) in [
+        ("tolerance_position = -1", "it must be positive"),
+        ("tolerance_position = nan", "tolerance of a task = NaN"),
+        ("tolerance_orientation = 0", "it must be positive"),
+    ] {
+        let text = format!(
+            "[[task]]\ntype = \"frame\"\nframe = \"hand_tcp\"\nxyz = [0.4, 0, 0.4]\n{key}\n"
+        );
+        std::fs::write(tasks, text).unwrap();
+        refused(&["move", "panda", "--tasks", tasks], says);
+    }
+    for weight in ["1e300", "1e-300"] {
+        let text = format!(
+            "[[task]]\ntype = \"frame\"\nframe = \"hand_tcp\"\nxyz = [0.4, 0, 0.4]\nweight = {weight}\n"
+        );
+        std::fs::write(tasks, text).unwrap();
+        refused(&["ik", "panda", "--tasks", tasks], "weight");
+    }
+    let csv = folder.path().join("q.csv");
+    std::fs::write(&csv, "joint1,joint1,joint2,joint3\n1,2,3,4\n").unwrap();
+    let csv = csv.to_str().unwrap();
+    refused(&["sweep", "3r", "--configurations", csv], "column 'joint1' is given twice");
+    let twists = folder.path().join("twists.csv");
+    let rows: String = (0..2001).map(|i| format!("{i},1,2,3,4,5\n")).collect();
+    std::fs::write(&twists, rows).unwrap();
+    let twists = twists.to_str().unwrap();
+    refused(&["screws", twists, "--h", "0.1"], "at most 2000");
+}
+
 /// Numbers that would let a command run for ever are refused at once.
 #[test]
 fn counts_and_steps_are_bounded() {

@@ -127,3 +127,12 @@ fn rates_of_a_point() {
     let output = cylindroid(&[&one[..], &["0,0,0"]].concat());
     assert_eq!(output.status.code(), Some(2));
 }
+
+/// Entries of a sweep that are nowhere finite have no smallest one: the table counts them.
+#[test]
+fn pitches_that_are_nowhere_finite_are_counted() {
+    let text = text(&["sweep", "3r", "--samples", "5", "--quantities", "gibson_hunt"]);
+    let line = text.lines().find(|l| l.starts_with("principal_pitch_2")).unwrap();
+    assert_eq!(line.split_whitespace().collect::<Vec<_>>(), ["principal_pitch_2", "m/rad", "5"]);
+    assert!(!text.contains("NaN"), "{text}");
+}

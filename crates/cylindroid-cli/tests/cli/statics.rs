@@ -141,6 +141,27 @@ fn grasps_that_are_none() {
     assert!(text.contains("no coefficient of friction"), "{text}");
 }
 
+/// Force closure of many fingers, whose mobility without friction is not analysed.
+#[test]
+fn many_fingers_are_closed() {
+    let mut text = "dimension = 2\nreference = \"ball\"\n".to_owned();
+    for i in 0..65 {
+        let (s, c) = (f64::from(i) * 0.1).sin_cos();
+        text += &format!(
+            "[[contact]]\nname = \"c{i}\"\ntype = \"hard_finger\"\nbetween = [\"ground\", \"ball\"]\n\
+             point = [{c}, {s}]\nnormal = [{}, {}]\nfriction = 0.3\n",
+            -c, -s
+        );
+    }
+    let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    let path = file.path().to_str().unwrap();
+    let report = json(&["grasp", path], 0);
+    assert!(report["closed"] == true && report["immobilisation"].is_null(), "{report}");
+    assert!(report["not_analysed"].as_str().unwrap().contains("at most 64 contacts"), "{report}");
+    assert!(crate::text(&["grasp", path]).contains("not analysed: at most 64 contacts"));
+}
+
 /// A triangle between three fingers: flat edges, a disc, and an object that overlaps.
 #[test]
 fn immobilisation() {

@@ -2,11 +2,16 @@
 //!
 //! Checked  tests/it/ik.rs, tests/it/ik_goals.rs
 
+use std::ops::RangeInclusive;
+
 use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Vec3};
-use crate::task::{Gaze, RelativeFrame, Task};
+use crate::task::{Gaze, RelativeFrame, Task, check_pose};
+
+/// Weights whose squares, and the products with those of errors, are numbers [-].
+const WEIGHTS: RangeInclusive<f64> = 1e-100..=1e100;
 
 /// What a goal places, and its target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,10 +75,7 @@ impl Objective {
         match *self {
             Self::Frame { end_effector, components, target } => {
                 mechanism.check_frame(end_effector.frame)?;
-                if !end_effector.frame_from_tool.is_finite() {
-                    let what = "frame_from_tool of the end effector".to_owned();
-                    return Err(Error::NotFinite { what, value: f64::NAN });
-                }
+                check_pose("frame_from_tool of the end effector", &end_effector.frame_from_tool)?;
                 Error::check_finite("target position", &target.translation.to_array())?;
                 if !target.is_finite() {
                     let what = "target orientation".to_owned();
@@ -236,7 +238,7 @@ pub(super) fn check_each(mechanism: &Mechanism, goals: &[Goal]) -> Result<()> {
         });
     }
     goals.iter().try_for_each(|goal| {
-        Error::check_positive("weight of the goal", goal.weight)?;
+        Error::check_range("weight of the goal", goal.weight, &WEIGHTS)?;
         goal.objective.check(mechanism)
     })
 }

@@ -72,9 +72,7 @@ impl IkOptions {
     pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         Error::check_positive("position tolerance", self.position_tolerance)?;
         Error::check_positive("orientation tolerance", self.orientation_tolerance)?;
-        if let Some(length) = self.length {
-            Error::check_positive("length", length)?;
-        }
+        mechanism.length_or(self.length)?;
         if let Some(guess) = &self.initial_guess {
             mechanism.check_q("initial guess", guess)?;
         }

@@ -15,7 +15,7 @@
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, RowSpace, Svd, dot};
 use crate::spatial::{Twist, Vec3};
-use crate::tolerance::{SCREW_CLASS, SCREW_RANK, ZERO_AXIS};
+use crate::tolerance::{MAX_MAGNITUDE, SCREW_CLASS, SCREW_RANK, ZERO_AXIS};
 
 /// The joint velocities that move a point along a line.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,7 @@ pub struct PointDirection {
 pub fn point_direction(j: &Matrix, point: Vec3, direction: Vec3) -> Result<PointDirection> {
     Error::check_len("rows of the matrix of twists", 6, j.rows())?;
     Error::check_finite("matrix", j.as_slice())?;
-    Error::check_finite("point", &point.to_array())?;
+    Error::check_within("point", &point.to_array(), MAX_MAGNITUDE)?;
     let Some(q) = direction.unit(ZERO_AXIS) else {
         return Err(Error::InvalidOption {
             option: "direction",

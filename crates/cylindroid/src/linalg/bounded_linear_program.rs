@@ -43,7 +43,7 @@ impl Interval {
     }
 
     /// The larger of both bounds.
-    fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         self.upper.max(-self.lower)
     }
 }

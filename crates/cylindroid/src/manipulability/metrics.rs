@@ -18,6 +18,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::{Matrix, Metric};
 use crate::model::FrameId;
+use crate::tolerance::LENGTHS;
 
 /// Metrics of twists, joint velocities, wrenches and joint torques. `None` is the identity for
 /// twists and velocities, and the dual for wrenches and torques.
@@ -110,16 +111,10 @@ impl Metrics {
     /// ```
     ///
     /// # Errors
-    /// A length that is not positive and finite, or whose square is not.
+    /// A length that is not one of [`LENGTHS`].
     pub fn characteristic_length(units: &Units, length: f64) -> Result<Self> {
+        Error::check_range("length", length, &LENGTHS)?;
         let weight = (length * length).recip();
-        if !(length > 0.0 && weight > 0.0 && weight.is_finite()) {
-            return Err(Error::InvalidOption {
-                option: "length",
-                value: length.to_string(),
-                reason: "the characteristic length must be positive and finite".to_owned(),
-            });
-        }
         let weights = |units: &[Unit]| -> Vec<f64> {
             units.iter().map(|u| if *u == Unit::Length { weight } else { 1.0 }).collect()
         };

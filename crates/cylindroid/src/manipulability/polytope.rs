@@ -21,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::linalg::{
     BoundedLinearProgram, Hull, HullGoal, HullOptions, Interval, Matrix, Objective,
 };
-use crate::tolerance::{CLOSURE_BLOCK, HULL, MAX_FACETS};
+use crate::tolerance::{CLOSURE_BLOCK, HULL, MAX_FACETS, MAX_MAGNITUDE};
 
 /// A polytope of twists or wrenches; zero is in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,8 +61,8 @@ pub struct Polytope {
 /// ```
 ///
 /// # Errors
-/// Limits that are non-finite or do not contain zero; a number of limits other than that of the
-/// actuated joints.
+/// Limits that do not contain zero, or whose larger one is not from 1 / [`MAX_MAGNITUDE`] to that; a
+/// number of limits other than that of the actuated joints.
 #[doc(alias = "zonotope")]
 #[doc(alias = "manipulability polytope")]
 pub fn velocity_polytope(relation: &Relation, velocity_limits: &[Interval]) -> Result<Polytope> {
@@ -124,13 +124,18 @@ impl Body {
     fn new(parts: RelationBases, option: &'static str, limits: &[Interval]) -> Result<Self> {
         let joints = parts.joint.rows();
         Error::check_len(option, joints, limits.len())?;
-        if let Some(limit) = limits.iter().find(|l| !l.is_around_zero()) {
+        let range = MAX_MAGNITUDE.recip()..=MAX_MAGNITUDE;
+        let is_limit = |l: &Interval| l.is_around_zero() && range.contains(&l.size());
+        if let Some(limit) = limits.iter().find(|l| !is_limit(l)) {
             return Err(Error::InvalidOption {
                 option,
                 value: format!("{} to {}", limit.lower, limit.upper),
-                reason: "limits must be finite, and zero must lie between them or be one of them; \
-                         give a pair for each actuated joint"
-                    .to_owned(),
+                reason: format!(
+                    "limits must be finite, zero must lie between them or be one of them, and the \
+                     larger must be from {:e} to {:e}; give a pair for each actuated joint",
+                    range.start(),
+                    range.end()
+                ),
             });
         }
         let all = Matrix::hstack(joints, &[&parts.joint, &parts.zero]);

@@ -21,10 +21,10 @@ use std::sync::Arc;
 use super::joint::{JointKind, JointLocus};
 use super::link::Geometry;
 use super::mechanism::Mechanism;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, number_text};
 use crate::spatial::{Pose, Vec3};
 use crate::tolerance::{
-    COMMON_POINT, MAX_MAGNITUDE, MIN_LENGTH, POSITION_ROUNDING, ROUNDED_LENGTHS,
+    COMMON_POINT, LENGTH_RATIO, MAX_MAGNITUDE, MIN_LENGTH, POSITION_ROUNDING, ROUNDED_LENGTHS,
 };
 
 /// A line, or a point where the direction is missing.
@@ -66,6 +66,27 @@ impl Mechanism {
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.data.reach
+    }
+
+    /// The characteristic length of the mechanism, or another one of similar size (m).
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for one that is not within a factor of [`LENGTH_RATIO`].
+    pub(crate) fn length_or(&self, length: Option<f64>) -> Result<f64> {
+        let own = self.reach();
+        let Some(length) = length else { return Ok(own) };
+        if (own / LENGTH_RATIO..=own * LENGTH_RATIO).contains(&length) {
+            return Ok(length);
+        }
+        Err(Error::InvalidOption {
+            option: "length",
+            value: number_text(length),
+            reason: format!(
+                "that of '{}' is {own} m: another must be within a factor of {LENGTH_RATIO:e} of it, \
+                 or ranks would be those of roundings",
+                self.name()
+            ),
+        })
     }
 
     /// Unit of the change of a coordinate: [`Mechanism::reach`] for lengths, otherwise 1. The places of

@@ -13,9 +13,12 @@ use super::screw::Screw;
 use super::span::{dot, lowered};
 use super::span_estimation::{columns, six};
 use super::system::ScrewSystem;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::linalg::{Matrix, SymmetricEigen};
 use crate::spatial::{Twist, Vec3};
+
+/// Twists at most, whose products with one another are a matrix.
+const MAX_TWISTS: usize = 2000;
 
 /// The Gram matrix `J^T Q_h J` of the pitch form, m x m, for the twists that are the columns of `j`
 /// (6 x m, linear first).
@@ -27,9 +30,16 @@ use crate::spatial::{Twist, Vec3};
 /// `h` in m/rad. Source: Donelan & Selig, section 3.
 ///
 /// # Errors
-/// A matrix without six rows.
+/// A matrix without six rows, or of more than 2000 columns.
 pub fn gram(j: &Matrix, h: f64) -> Result<Matrix> {
     let twists = columns(j)?;
+    if twists.len() > MAX_TWISTS {
+        return Err(Error::InvalidOption {
+            option: "twists",
+            value: twists.len().to_string(),
+            reason: format!("a Gram matrix is that of at most {MAX_TWISTS}; leave out some"),
+        });
+    }
     Ok(Matrix::from_fn(twists.len(), twists.len(), |a, b| twists[a].pitch_form(twists[b], h)))
 }
 

@@ -22,6 +22,7 @@ use super::span_estimation::ScrewOptions;
 use super::system::ScrewSystem;
 use crate::error::{Error, Result};
 use crate::spatial::Twist;
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// The pitches at which the error form of a twist vanishes, see [`ScrewSystem::error_form_zeros`].
 #[derive(Debug, Clone, PartialEq)]
@@ -95,7 +96,7 @@ impl ScrewSystem {
     /// # Errors
     /// A twist with non-finite entries.
     pub fn error_form_zeros(&self, twist: Twist) -> Result<ErrorFormZeros> {
-        Error::check_finite("twist", &twist.to_array())?;
+        Error::check_within("twist", &twist.to_array(), MAX_MAGNITUDE)?;
         if self.class().never_invertible() {
             return Ok(ErrorFormZeros::Undefined);
         }

@@ -56,7 +56,7 @@ impl Projector {
     /// ```
     ///
     /// # Errors
-    /// Non-finite twists or options, a pitch that is NaN, a length that is not positive.
+    /// Non-finite twists or options, a pitch that is NaN, a length that is not one of [`LENGTHS`](crate::tolerance::LENGTHS).
     pub fn of(
         motions: &[Twist],
         along: Complement<'_>,

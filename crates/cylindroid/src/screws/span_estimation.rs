@@ -14,8 +14,8 @@ use crate::linalg::{Matrix, Rank, Svd};
 use crate::scalar::{clamp, power_of_two};
 use crate::spatial::{Twist, Vec3};
 use crate::tolerance::{
-    AMBIGUOUS, CENTER_FOUND, FAR_AXIS, FAR_ORIGIN, NOISE_CLASS, NOISE_CONDITION, NOISE_OF_ZERO,
-    NOISE_RANK, SCREW_CLASS, SCREW_RANK,
+    AMBIGUOUS, CENTER_FOUND, FAR_AXIS, FAR_ORIGIN, LENGTHS, MAX_MAGNITUDE, NOISE_CLASS,
+    NOISE_CONDITION, NOISE_OF_ZERO, NOISE_RANK, SCREW_CLASS, SCREW_RANK,
 };
 
 /// Steps to the centre at most; each shortens the way by a factor that depends on the system.
@@ -65,16 +65,7 @@ impl ScrewOptions {
     /// # Errors
     /// [`Error::InvalidOption`] with the option and its value.
     pub fn check(&self) -> Result<()> {
-        if !(self.length > 0.0 && self.length.is_finite()) {
-            return Err(Error::InvalidOption {
-                option: "length",
-                value: self.length.to_string(),
-                reason:
-                    "the characteristic length must be positive and finite: the reach of the arm, \
-                         in the unit of the linear velocities"
-                        .to_owned(),
-            });
-        }
+        Error::check_range("length", self.length, &LENGTHS)?;
         if !(self.noise >= 0.0 && self.noise < 0.1) {
             return Err(Error::InvalidOption {
                 option: "noise",
@@ -84,7 +75,7 @@ impl ScrewOptions {
             });
         }
         match self.center {
-            Some(c) => Error::check_finite("center", &c.to_array()),
+            Some(c) => Error::check_within("center", &c.to_array(), MAX_MAGNITUDE),
             None => Ok(()),
         }
     }

@@ -70,7 +70,7 @@ impl ScrewSystem {
     /// ```
     ///
     /// # Errors
-    /// Non-finite twists or options, a length that is not positive.
+    /// Non-finite twists or options, a length that is not one of [`LENGTHS`](crate::tolerance::LENGTHS).
     pub fn of(twists: &[Twist], options: &ScrewOptions) -> Result<Self> {
         options.check()?;
         if let Some(i) = twists.iter().position(|t| !t.is_finite()) {

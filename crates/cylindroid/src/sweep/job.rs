@@ -68,7 +68,7 @@ impl Sweep {
     /// # Errors
     /// Samples of a slider without limits or of a closed chain, an unknown or repeated coordinate,
     /// quantities that a closed chain does not have or that are named twice, unknown components, a
-    /// length that is not positive, a metric of limits that a joint does not have, collision shapes
+    /// length that is not of its size, a metric of limits that a joint does not have, collision shapes
     /// that no link has or of another mechanism, obstacles that are missing, own columns without a name
     /// or with that of another column; of a capability map own columns, quantities that are no
     /// index, and orientations that too few joints reach; of poses components that inverse kinematics

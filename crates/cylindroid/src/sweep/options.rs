@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
 use crate::model::{FrameId, Mechanism};
 use crate::spatial::Vec3;
-use crate::task::Task;
+use crate::task::{Task, check_pose};
 
 /// Rows of a part by default.
 pub(super) const PART_ROWS: u64 = 1 << 16;
@@ -57,11 +57,11 @@ impl SweepOptions {
                 message: "it has no coordinates to sweep".to_owned(),
             });
         }
-        let length = self.length.unwrap_or(mechanism.reach());
-        Error::check_positive("length", length)?;
+        let length = mechanism.length_or(self.length)?;
         let default = if mechanism.is_closed() { mechanism.reference() } else { mechanism.tool() };
         let end_effector = self.end_effector.unwrap_or(default.into());
         mechanism.check_frame(end_effector.frame)?;
+        check_pose("frame_from_tool of the end effector", &end_effector.frame_from_tool)?;
         Ok((end_effector, length))
     }
 }

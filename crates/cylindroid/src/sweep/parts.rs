@@ -7,7 +7,7 @@
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
+use std::thread::{self, Builder};
 use std::time::Duration;
 
 use crate::error::{Error, Result};
@@ -36,10 +36,10 @@ pub(super) fn run_parts<M: Default, T: Send>(
     let mut failed: Option<(usize, Error)> = None;
     let mut ticked = Ok(true);
     thread::scope(|scope| {
-        for _ in 0..threads {
+        for started in 0..threads {
             let sender = sender.clone();
             let (next, stop, work) = (&next, &stop, &work);
-            scope.spawn(move || {
+            let spawned = Builder::new().spawn_scoped(scope, move || {
                 let mut memory = M::default();
                 while !stop.load(Ordering::Relaxed) {
                     let part = next.fetch_add(1, Ordering::Relaxed);
@@ -49,6 +49,15 @@ pub(super) fn run_parts<M: Default, T: Send>(
                     }
                 }
             });
+            // Those that the system permits do the work.
+            if let Err(error) = spawned {
+                if started == 0 {
+                    let reason = format!("no thread could be started: {error}");
+                    let value = threads.to_string();
+                    failed = Some((0, Error::InvalidOption { option: "threads", value, reason }));
+                }
+                break;
+            }
         }
         drop(sender);
         loop {

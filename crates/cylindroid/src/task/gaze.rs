@@ -13,6 +13,7 @@ use crate::kinematics::{EndEffector, ReferenceFrame, State};
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::spatial::Vec3;
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// A frame that looks along its z axis, and the point.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +27,7 @@ impl Gaze {
     pub(crate) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         mechanism.check_frame(self.end_effector.frame)?;
         check_pose("tool of the gaze", &self.end_effector.frame_from_tool)?;
-        Error::check_finite("point of the gaze", &self.point.to_array())
+        Error::check_within("point of the gaze", &self.point.to_array(), MAX_MAGNITUDE)
     }
 
     /// The direction of the point, and its distance; `None` if it is at the origin of the frame.

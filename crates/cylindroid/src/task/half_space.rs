@@ -5,11 +5,13 @@
 //! Units    m
 //! Checked  tests/it/servo/task_kinds.rs::half_spaces_are_not_left
 
+use super::check_pose;
 use crate::error::{Error, Result};
 use crate::kinematics::{EndEffector, ReferenceFrame, State};
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Vec3};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// A half-space of the world that a tool point must not leave.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,10 +74,8 @@ impl HalfSpace {
     pub(crate) fn check(&self, mechanism: &Mechanism) -> Result<()> {
         mechanism.check_frame(self.end_effector.frame)?;
         let what = |part: &str| format!("{part} of the half-space '{}'", self.name);
-        if !self.end_effector.frame_from_tool.is_finite() {
-            return Err(Error::NotFinite { what: what("tool"), value: f64::NAN });
-        }
-        Error::check_finite(&what("point"), &self.point.to_array())?;
+        check_pose(&what("tool"), &self.end_effector.frame_from_tool)?;
+        Error::check_within(&what("point"), &self.point.to_array(), MAX_MAGNITUDE)?;
         Error::check_finite(&what("normal"), &self.normal.to_array())?;
         if self.normal.norm() > 0.0 {
             return Ok(());

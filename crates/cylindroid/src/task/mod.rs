@@ -15,13 +15,14 @@ pub(crate) use relative_frame::RelativeFrame;
 
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Twist};
+use crate::tolerance::MAX_MAGNITUDE;
 
-/// Refuses a non-finite pose.
-fn check_pose(what: &str, pose: &Pose) -> Result<()> {
-    match pose.is_finite() {
-        true => Ok(()),
-        false => Err(Error::NotFinite { what: what.to_owned(), value: f64::NAN }),
+/// Refuses a pose that is not finite, or too far away for finite results.
+pub(crate) fn check_pose(what: &str, pose: &Pose) -> Result<()> {
+    if !pose.is_finite() {
+        return Err(Error::NotFinite { what: what.to_owned(), value: f64::NAN });
     }
+    Error::check_within(what, &pose.translation.to_array(), MAX_MAGNITUDE)
 }
 
 /// The twist of a column of a Jacobian.

@@ -303,7 +303,7 @@ fn quantities_that_do_not_exist_are_refused() {
     let none = Task { components: [false; 6], ..Task::POSE };
     assert!(refused("panda", with_task(none)).contains("at least one"));
     let length = SweepOptions { length: Some(0.0), ..Default::default() };
-    assert!(refused("panda", length).contains("positive"));
+    assert!(refused("panda", length).contains("within a factor of 1e5"));
     let metric = VelocityMetric::Limits;
     let limits = SweepOptions { metric, ..with(&[Quantity::Yoshikawa]) };
     assert!(refused("puma560", limits).contains("no velocity limit"));

@@ -7,6 +7,7 @@ use cylindroid::closure::{
     grasp_mobility, grasp_quality,
 };
 use cylindroid::model::Mechanism;
+use cylindroid::tolerance::LENGTHS;
 use cylindroid::{Error, FrameId, Result};
 use serde::Serialize;
 
@@ -34,7 +35,11 @@ struct GraspJson<'a> {
     /// Characteristic length [m].
     length: f64,
     contacts: Vec<ContactJson<'a>>,
-    immobilisation: ImmobilisationJson<'a>,
+    /// Null where there are too many contacts for it.
+    immobilisation: Option<ImmobilisationJson<'a>>,
+    /// Why it is null.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_analysed: Option<&'a str>,
 }
 
 #[derive(Debug, Serialize)]
@@ -71,7 +76,7 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         fingers(&mechanism, &state, object, args)?.into_iter().unzip();
     let mut space = WrenchSpace::about(&state, object, &fingers)?;
     if let Some(length) = args.length {
-        Error::check_positive("--length", length)?;
+        Error::check_range("--length", length, &LENGTHS)?;
         space.length = length;
     }
     let metric = match args.strength {
@@ -79,7 +84,11 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         None => GraspMetric::L1,
     };
     let quality = grasp_quality(&fingers, space, metric)?;
-    let mobility = grasp_mobility(&fingers, space)?;
+    // Force closure has no limit of contacts: its verdict stands without that of mobility.
+    let mobility = match grasp_mobility(&fingers, space) {
+        Err(Error::InvalidOption { option: "contacts", reason, .. }) => Err(reason),
+        found => Ok(found?),
+    };
     let contacts = places.iter().zip(&fingers).map(|(&i, finger)| {
         let contact = &mechanism.contacts()[i];
         ContactJson {
@@ -104,7 +113,8 @@ pub(crate) fn run(args: &GraspArgs, style: Style, out: &mut dyn Write) -> anyhow
         weakest: &quality.weakest,
         length: space.length,
         contacts: contacts.collect(),
-        immobilisation: ImmobilisationJson::of(&mobility),
+        immobilisation: mobility.as_ref().ok().map(ImmobilisationJson::of),
+        not_analysed: mobility.as_ref().err().map(String::as_str),
     };
     match style {
         Style::Json => output::json(out, &report)?,
@@ -180,7 +190,12 @@ fn print(
         ("metric", metric.to_owned()),
         ("length [m]", number(report.length)),
     ];
-    pairs.extend(report.immobilisation.pairs());
+    if let Some(found) = &report.immobilisation {
+        pairs.extend(found.pairs());
+    }
+    if let Some(reason) = report.not_analysed {
+        pairs.push(("without friction", format!("not analysed: {reason}")));
+    }
     output::pairs(out, pairs)?;
     writeln!(out)?;
     let mut columns = vec![("weakest direction", Align::Left)];
@@ -189,7 +204,9 @@ fn print(
     let row = std::iter::once("moments over the length".to_owned()).chain(cells).collect();
     output::table(out, &columns, [row])?;
     writeln!(out)?;
-    report.immobilisation.print(out, report.components)?;
+    if let Some(found) = &report.immobilisation {
+        found.print(out, report.components)?;
+    }
     let columns = [
         ("contact", Align::Left),
         ("kind", Align::Left),

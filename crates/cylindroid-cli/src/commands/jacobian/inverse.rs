@@ -6,6 +6,7 @@ use std::io::Write;
 use clap::ValueEnum as _;
 use cylindroid::inverse::{Inverse, TruncatedDirection};
 use cylindroid::linalg::Matrix;
+use cylindroid::tolerance::MAX_MAGNITUDE;
 use cylindroid::{EndEffector, Error, ReferenceFrame, Result, State, Twist};
 use serde::Serialize;
 
@@ -84,7 +85,7 @@ pub(super) fn find(
     let choice = selection(&args.inverse, None).choice(length).map_err(as_typed)?;
     let twist = args.twist.map(|t| t.0);
     if let Some(twist) = twist {
-        Error::check_finite("--twist", &twist)?;
+        Error::check_within("--twist", &twist, MAX_MAGNITUDE)?;
     }
     let inverse = choice.inverse(state, tool, reference, twist.map(Twist::from_array))?;
     let applied = |t: [f64; 6]| inverse.exists.then(|| inverse.matrix.mul_vec(&t));

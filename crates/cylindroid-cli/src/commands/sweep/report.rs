@@ -177,13 +177,15 @@ impl Outcome<'_> {
             ("largest", Align::Right),
             ("not finite", Align::Right),
         ];
+        // NaN where no entry is finite, which the last column says.
+        let of_finite = |x: f64| if x.is_nan() { String::new() } else { number(x) };
         let rows = columns.iter().filter_map(|(column, statistics)| match statistics {
             Statistics::Numbers { smallest, mean, largest, not_finite } => Some(vec![
                 column.name.clone(),
                 column.unit.to_string(),
-                number(*smallest),
-                number(*mean),
-                number(*largest),
+                of_finite(*smallest),
+                of_finite(*mean),
+                of_finite(*largest),
                 if *not_finite == 0 { String::new() } else { not_finite.to_string() },
             ]),
             _ => None,

@@ -62,8 +62,8 @@ impl ClosedChain {
     /// ```
     ///
     /// # Errors
-    /// A frame of another mechanism, a length that is not positive, an actuated loop joint of
-    /// several coordinates; more than 2000 columns, or 12 000 rows.
+    /// A frame of another mechanism, a length that is not of the size of the mechanism, an actuated
+    /// loop joint of several coordinates; more than 2000 columns, or 12 000 rows.
     pub fn of(state: &State, reference: Option<FrameId>, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
         let reference = reference.unwrap_or_else(|| mechanism.reference());
@@ -109,7 +109,7 @@ impl ClosedChain {
             object,
         };
         let constraint = Constraint::new(blocks)?
-            .with_length(&units, length.unwrap_or_else(|| mechanism.reach()))?
+            .with_length(&units, mechanism.length_or(length)?)?
             .with_vectors(vectors);
         Ok(Self {
             constraint,
@@ -141,11 +141,14 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// The columns of rotation vectors, positions of free bodies, and displacements in a plane.
+    /// The columns of rotation vectors, positions of free bodies, and displacements in a plane. Where
+    /// some components are actuated, these are a vector, and the others are another.
     fn vectors(&self, mechanism: &Mechanism) -> Vec<Range<usize>> {
-        let first = |coordinate: usize| {
-            let (actuated, place) = self.places[coordinate];
-            if actuated { place } else { self.actuated.len() + place }
+        let of_kind = |coordinates: &[(bool, usize)], actuated: bool| {
+            let mut own = coordinates.iter().filter(|(a, _)| *a == actuated);
+            let before = if actuated { 0 } else { self.actuated.len() };
+            let first = before + own.next()?.1;
+            Some(first..first + 1 + own.count())
         };
         let joints = mechanism.joints().iter().filter(|j| j.mimic.is_none());
         let groups = joints.flat_map(|joint| {
@@ -161,7 +164,8 @@ impl Columns {
                 (from - size, *size)
             })
         });
-        groups.map(|(c, size)| first(c)..first(c) + size).collect()
+        let groups = groups.map(|(c, size)| &self.places[c..c + size]);
+        groups.flat_map(|g| [of_kind(g, true), of_kind(g, false)].into_iter().flatten()).collect()
     }
 
     pub(crate) fn of(mechanism: &Mechanism, loops: &[&LoopJoint]) -> Self {

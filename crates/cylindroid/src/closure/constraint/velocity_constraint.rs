@@ -19,7 +19,7 @@ use std::ops::Range;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix};
 use crate::model::CoordinateKind;
-use crate::tolerance::{CLOSURE_BLOCK, KERNEL_ROUNDING};
+use crate::tolerance::{CLOSURE_BLOCK, KERNEL_ROUNDING, LENGTHS};
 
 /// The unit of a coordinate or of a row of the constraint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,10 +145,10 @@ impl Constraint {
     /// ```
     ///
     /// # Errors
-    /// The wrong number of units; a length that is not positive and finite, or so large or small
-    /// that scaled entries overflow.
+    /// The wrong number of units; a length that is not one of [`LENGTHS`]; scaled entries that
+    /// overflow.
     pub fn with_length(mut self, units: &Units, length: f64) -> Result<Self> {
-        Error::check_positive("length", length)?;
+        Error::check_range("length", length, &LENGTHS)?;
         Error::check_len("units of the rows", self.rows(), units.rows.len())?;
         Error::check_len("units of the actuated joints", self.actuated(), units.actuated.len())?;
         Error::check_len("units of the passive joints", self.passive(), units.passive.len())?;

@@ -22,7 +22,7 @@ use super::branches::branches;
 use super::lyapunov_schmidt::LyapunovSchmidt;
 use super::rays::Rays;
 use super::second_order::SecondOrder;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold};
 use crate::tolerance::{
@@ -147,11 +147,10 @@ impl FiniteMobility {
     /// ```
     ///
     /// # Errors
-    /// A length that is not positive and finite; more than 2000 coordinates.
+    /// A length that is not of the size of the mechanism; more than 2000 coordinates.
     pub fn of(state: &State, length: Option<f64>) -> Result<Self> {
         let mechanism = state.mechanism();
-        let length = length.unwrap_or_else(|| mechanism.reach());
-        Error::check_positive("length", length)?;
+        let length = mechanism.length_or(length)?;
         let reduction = LyapunovSchmidt::of(mechanism, state.q(), length, CLOSURE_RANK)?;
         let k = reduction.motions();
         let mut report = Self {

@@ -19,7 +19,7 @@
 use super::limb_graph::{EdgeKind, LimbEdges, limbs};
 use super::limb_motion::{LimbColumn, LimbConstraint, LimbMotion, PlatformCoordinates};
 use crate::closure::constraint::constraint_rows::constraint_rows;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::kinematics::State;
 use crate::linalg::{ColumnSpace, Matrix, Threshold, dot, norm};
 use crate::model::{FrameId, JointKind, Mechanism};
@@ -115,8 +115,7 @@ impl LimbScrews {
         let mechanism = state.mechanism();
         let reference = reference.unwrap_or_else(|| mechanism.reference());
         mechanism.check_frame(reference)?;
-        let length = length.unwrap_or_else(|| mechanism.reach());
-        Error::check_positive("length", length)?;
+        let length = mechanism.length_or(length)?;
         let platform = PlatformCoordinates::of(mechanism, state, reference, length);
         let (rows, ..) = constraint_rows(state)?;
         let mut all = Vec::new();

@@ -16,6 +16,7 @@ use crate::closure::constraint::velocity_constraint::Constraint;
 use crate::closure::mobility::motion_space::MotionSpace;
 use crate::error::{Error, Result};
 use crate::linalg::{Metric, Svd, dot, norm};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// A static load: joint torques and a wrench on the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,8 +105,8 @@ impl<'a> ContactForceSolver<'a> {
         let (constraint, svd) = (self.constraint, &self.svd);
         Error::check_len("torques", constraint.actuated(), load.torques.len())?;
         Error::check_len("wrench", constraint.object(), load.wrench.len())?;
-        Error::check_finite("torques", load.torques)?;
-        Error::check_finite("wrench", load.wrench)?;
+        Error::check_within("torques", load.torques, MAX_MAGNITUDE)?;
+        Error::check_within("wrench", load.wrench, MAX_MAGNITUDE)?;
         // b' = -D_c (tau, 0, -w): the columns of the object carry -G^T, and G t = w.
         let (a, p) = (constraint.actuated(), constraint.passive());
         let scale = constraint.column_scale();

@@ -15,12 +15,13 @@
 //! Source   Ferrari & Canny 1992; Zheng 2013; cones of soft fingers Howe & Cutkosky 1996
 //! Checked  tests/it/closure/grasp.rs
 
+use super::nearest_point::{NearestPoint, nearest_point};
 use super::smallest_support::{Search, Smallest, Vector, smallest_support};
 use crate::error::{Error, Result};
 use crate::linalg::{Hull, HullGoal, HullOptions, Qr, dot, norm};
 use crate::model::{ContactCurvature, Dimension};
 use crate::spatial::Vec3;
-use crate::tolerance::{GRASP_QUALITY, HULL, MAX_FACETS, MAX_SIMPLICES, ORTHONORMAL};
+use crate::tolerance::{GRASP_QUALITY, HULL, LENGTHS, MAX_FACETS, MAX_SIMPLICES, ORTHONORMAL};
 
 /// The friction model of a finger.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,7 +140,8 @@ impl WrenchSpace {
 
 /// Bounds of the quality epsilon of Ferrari and Canny: the norm of the smallest wrench that the
 /// bounded contact forces cannot resist, in its worst direction (N, moments divided by the
-/// characteristic length). Not positive without force closure.
+/// characteristic length). Not positive without force closure: less the distance of the set of wrenches
+/// from zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EpsilonQuality {
     /// Lower bound.
@@ -195,13 +197,13 @@ pub struct GraspQuality {
 ///
 /// # Errors
 /// A contact normal that is no unit vector, a negative coefficient, a strength that is not
-/// positive, non-finite values; a length that is not positive.
+/// positive, non-finite values; a length that is not one of [`LENGTHS`].
 pub fn grasp_quality(
     contacts: &[FingerContact],
     space: WrenchSpace,
     metric: GraspMetric,
 ) -> Result<GraspQuality> {
-    Error::check_positive("length", space.length)?;
+    Error::check_range("length", space.length, &LENGTHS)?;
     let fingers: Vec<Finger> =
         contacts.iter().map(|c| Finger::new(c, space, metric)).collect::<Result<_>>()?;
     let d = space.components().len();
@@ -226,8 +228,9 @@ pub fn grasp_quality(
         },
     );
     let size = hull.vertices.iter().map(|v| norm(v)).fold(0.0, f64::max);
+    let open = || nearest_point(d, size, |n| body(n));
     if hull.span.cols() < d {
-        return Ok(flat(&hull, size));
+        return Ok(flat(&hull, size, open()));
     }
     let mut found = Smallest {
         lower: hull.nearest_facet().map_or(f64::NEG_INFINITY, |f| f.offset),
@@ -256,8 +259,17 @@ pub fn grasp_quality(
         }
         found.lower = found.lower.max(certain.lower);
     }
+    let closed = found.lower > HULL * size;
+    if !closed {
+        // Facets bound it from below only around the origin.
+        let nearest = open();
+        found.lower = -norm(&nearest.point);
+        if nearest.lower > 0.0 && -nearest.lower <= found.upper {
+            (found.upper, found.direction) = (-nearest.lower, nearest.away);
+        }
+    }
     Ok(GraspQuality {
-        closed: found.lower > HULL * size,
+        closed,
         epsilon: EpsilonQuality { lower: found.lower.min(found.upper), upper: found.upper },
         weakest: found.direction[..d].to_vec(),
     })
@@ -294,21 +306,18 @@ fn six(n: &[f64]) -> Vector {
 
 /// A flat set of wrenches resists nothing normal to it; if it does not contain zero, it even pushes
 /// to one side only.
-fn flat(hull: &Hull, size: f64) -> GraspQuality {
-    let across = Qr::plain(hull.span.clone()).complement();
-    let apart = across.transpose().mul_vec(&hull.vertices[0]);
-    let distance = norm(&apart);
-    let (weakest, epsilon) = if distance > HULL * size {
-        let away: Vec<f64> = apart.iter().map(|a| -a / distance).collect();
-        (across.mul_vec(&away), -distance)
+fn flat(hull: &Hull, size: f64, nearest: NearestPoint) -> GraspQuality {
+    let distance = norm(&nearest.point);
+    let (weakest, epsilon) = if distance > HULL * size && nearest.lower > 0.0 {
+        (
+            nearest.away[..hull.span.rows()].to_vec(),
+            EpsilonQuality { lower: -distance, upper: -nearest.lower },
+        )
     } else {
-        (across.column(0).to_vec(), 0.0)
+        let across = Qr::plain(hull.span.clone()).complement();
+        (across.column(0).to_vec(), EpsilonQuality { lower: 0.0, upper: 0.0 })
     };
-    GraspQuality {
-        closed: false,
-        epsilon: EpsilonQuality { lower: epsilon, upper: epsilon },
-        weakest,
-    }
+    GraspQuality { closed: false, epsilon, weakest }
 }
 
 /// A contact with scaled columns: strength and friction are absorbed, so that the cone is `|rest|

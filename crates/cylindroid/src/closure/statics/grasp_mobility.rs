@@ -27,7 +27,9 @@ use super::separating_direction::separating_direction;
 use crate::error::{Error, Result};
 use crate::linalg::{ColumnSpace, Matrix, Threshold, dot, norm};
 use crate::spatial::Vec3;
-use crate::tolerance::{CLOSED, CLOSURE_RANK, EQUAL_CURVATURES, SECOND_ORDER};
+use crate::tolerance::{
+    CLOSED, CLOSURE_RANK, EQUAL_CURVATURES, LENGTHS, MAX_MAGNITUDE, SECOND_ORDER,
+};
 
 /// The verdict on the mobility of a grasped object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,8 +184,8 @@ pub struct GraspMobility {
 #[doc(alias = "immobilization")]
 #[doc(alias = "form closure")]
 pub fn grasp_mobility(contacts: &[FingerContact], space: WrenchSpace) -> Result<GraspMobility> {
-    Error::check_positive("length", space.length)?;
-    Error::check_finite("point", &space.point.to_array())?;
+    Error::check_range("length", space.length, &LENGTHS)?;
+    Error::check_within("point", &space.point.to_array(), MAX_MAGNITUDE)?;
     for contact in contacts {
         contact.check(space)?;
     }
@@ -226,8 +228,12 @@ fn gap(contact: &FingerContact, space: WrenchSpace) -> Result<ContactGap> {
         reason,
     };
     contact.curvature.check(contact.normal, space.planar).map_err(refuse)?;
-    ContactGap::of(contact, space)
-        .ok_or_else(|| refuse("the contact has no tangent plane".to_owned()))
+    let gap = ContactGap::of(contact, space)
+        .ok_or_else(|| refuse("the contact has no tangent plane".to_owned()))?;
+    if !gap.form.frobenius_norm().is_finite() {
+        return Err(refuse(format!("it is out of range for contacts {:e} m apart", space.length)));
+    }
+    Ok(gap)
 }
 
 /// Orthonormal motions with those of equal eigenvalues rotated so that each is a projection of a
@@ -238,7 +244,7 @@ fn along_axes(motions: &Matrix, values: &[f64]) -> Matrix {
     let mut from = 0;
     while from < m {
         let equal = |value: &&f64| (values[from] - **value).abs() <= EQUAL_CURVATURES;
-        let to = from + values[from..].iter().take_while(equal).count();
+        let to = from + values[from..].iter().take_while(equal).count().max(1);
         for _ in from..to {
             // Projections of the axes, without the motions found.
             let remaining = |axis: usize| -> Vec<f64> {

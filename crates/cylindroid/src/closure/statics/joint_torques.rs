@@ -12,6 +12,7 @@
 use crate::closure::mobility::relation::{DualRelation, Relation};
 use crate::error::{Error, Result};
 use crate::linalg::{Metric, Qr, dot};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// Joint torques in equilibrium with a wrench.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +59,7 @@ pub fn joint_torques(
     metric: Option<&Metric>,
 ) -> Result<JointTorques> {
     Error::check_len("wrench", relation.object(), wrench.len())?;
-    Error::check_finite("wrench", wrench)?;
+    Error::check_within("wrench", wrench, MAX_MAGNITUDE)?;
     let DualRelation { mut torques, structural, unbalanced } = relation.balance(wrench);
     if let Some(metric) = metric {
         Error::check_len("torque metric", relation.joints(), metric.len())?;

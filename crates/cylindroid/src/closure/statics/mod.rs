@@ -19,6 +19,7 @@ pub(crate) mod grasp_contacts;
 pub(crate) mod grasp_mobility;
 pub(crate) mod internal_force_relation;
 pub(crate) mod joint_torques;
+mod nearest_point;
 mod relative_curvature;
 mod separating_direction;
 mod smallest_support;

@@ -21,6 +21,7 @@ use crate::error::{Error, Result};
 use crate::kinematics::State;
 use crate::linalg::Metric;
 use crate::spatial::{Vec3, Wrench};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// The wrench transmitted by a loop joint or a contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,7 +85,7 @@ pub fn transmitted_wrenches(
     forces: &[f64],
 ) -> Result<Vec<TransmittedWrench>> {
     Error::check_len("contact forces", chain.constraint.rows(), forces.len())?;
-    Error::check_finite("contact forces", forces)?;
+    Error::check_within("contact forces", forces, MAX_MAGNITUDE)?;
     let mechanism = state.mechanism();
     let rows = pairs(state, chain)?;
     let pose = |link: usize| state.link_pose(link);

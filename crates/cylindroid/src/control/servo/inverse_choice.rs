@@ -22,6 +22,7 @@ use crate::kinematics::{EndEffector, ReferenceFrame, State};
 use crate::linalg::Matrix;
 use crate::screws::ScrewOptions;
 use crate::spatial::{Pose, Twist};
+use crate::tolerance::{LENGTHS, MAX_MAGNITUDE};
 
 /// An inverse as chosen in [`ServoOptions`](super::ServoOptions): method, projection and length.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,7 +81,7 @@ impl InverseChoice {
         let (mechanism, tool) = (state.mechanism(), tool.into());
         mechanism.check_frame(tool.frame)?;
         if let Some(twist) = twist {
-            Error::check_finite("twist", &twist.to_array())?;
+            Error::check_within("twist", &twist.to_array(), MAX_MAGNITUDE)?;
         }
         let pose = state.pose_of(tool);
         let seen = |t: Twist, from| seen_from(reference, pose, to_world(from, pose, t));
@@ -103,7 +104,7 @@ impl InverseChoice {
         twist: Option<Twist>,
         seen: impl Fn(Twist, ReferenceFrame) -> Twist,
     ) -> Result<Inverse> {
-        Error::check_positive("length", self.length)?;
+        Error::check_range("length", self.length, &LENGTHS)?;
         self.projection.check()?;
         let options = |damping| HyperbolicOptions {
             scale: ScrewOptions::with_length(self.length),

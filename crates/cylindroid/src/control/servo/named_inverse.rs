@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::inverse::{Domain, HyperbolicDamping, Method, Parameter};
 use crate::kinematics::ReferenceFrame;
 use crate::spatial::Twist;
+use crate::tolerance::LENGTHS;
 
 const PITCH: Parameter = Parameter::new(
     ["h", "m/rad", "Pitch of the form; may be infinite. A length of the order of the arm."],
@@ -215,9 +216,9 @@ impl InverseSelection<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`InverseSelection::apply`]; a length that is not positive.
+    /// As [`InverseSelection::apply`]; a length that is not one of [`LENGTHS`].
     pub fn choice(&self, length: f64) -> Result<InverseChoice> {
-        Error::check_positive("length", length)?;
+        Error::check_range("length", length, &LENGTHS)?;
         let chosen = NamedInverse::named(self.name)?;
         self.refuse_foreign(&chosen, &[])?;
         let method = self.method_of(&chosen)?;

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::inverse::Method;
 use crate::kinematics::{Chain, EndEffector};
 use crate::model::{Dimension, Mechanism};
-use crate::task::Task;
+use crate::task::{Task, check_pose};
 use crate::tolerance;
 
 /// Proportional gains [1/s].
@@ -204,12 +204,9 @@ impl ServoOptions {
     pub fn check(&self, mechanism: &Mechanism) -> Result<()> {
         let positive = Error::check_positive;
         mechanism.check_frame(self.end_effector.frame)?;
-        if !self.end_effector.frame_from_tool.is_finite() {
-            let what = "frame_from_tool of the end effector".to_owned();
-            return Err(Error::NotFinite { what, value: f64::NAN });
-        }
+        check_pose("frame_from_tool of the end effector", &self.end_effector.frame_from_tool)?;
         positive("dt", self.dt)?;
-        positive("length", self.length)?;
+        mechanism.length_or(Some(self.length))?;
         for (option, gain) in
             [("position gain", self.gain.position), ("orientation gain", self.gain.orientation)]
         {

@@ -23,6 +23,9 @@ const FILTER_TIME: f64 = 0.02;
 /// Steps that a delay lasts at most: memory for all of them is reserved at the start.
 const MAX_DELAY: f64 = 1000.0;
 
+/// Longest time constant, in steps: slower drives do not move within any motion.
+const MAX_TIME_CONSTANT: f64 = 1e6;
+
 /// How a robot follows the commands of a servo: with [`Plant::IDEAL`], at once and exactly.
 ///
 /// The servo steers the configuration to which the commands given so far lead, so that braking
@@ -61,8 +64,8 @@ impl Plant {
     /// Checks the values for steps of `dt` (s).
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for negative, infinite or NaN values, and for a delay of more than
-    /// 1000 steps.
+    /// [`Error::InvalidOption`] for negative, infinite or NaN values, for a delay of more than 1000
+    /// steps, and for a time constant of more than a million.
     pub fn check(&self, dt: f64) -> Result<()> {
         for (option, value) in
             [("delay", self.delay), ("time constant", self.time_constant), ("noise", self.noise)]
@@ -80,6 +83,16 @@ impl Plant {
                 option: "delay",
                 value: self.delay.to_string(),
                 reason: format!("it must be at most {MAX_DELAY} steps, {} s", MAX_DELAY * dt),
+            });
+        }
+        if self.time_constant > MAX_TIME_CONSTANT * dt {
+            return Err(Error::InvalidOption {
+                option: "time constant",
+                value: self.time_constant.to_string(),
+                reason: format!(
+                    "it must be at most {MAX_TIME_CONSTANT:e} steps, {} s",
+                    MAX_TIME_CONSTANT * dt
+                ),
             });
         }
         Ok(())

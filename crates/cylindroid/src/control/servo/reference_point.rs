@@ -18,7 +18,7 @@ use crate::kinematics::{Chain, EndEffector, ReferenceFrame, State};
 use crate::linalg::{Matrix, norm};
 use crate::screws::NoInverse;
 use crate::spatial::{Pose, Twist, Vec3};
-use crate::tolerance::SAME_RATES;
+use crate::tolerance::{MAX_MAGNITUDE, SAME_RATES};
 
 /// The inverse of a twist for one reference point.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,8 +102,8 @@ impl InverseChoice {
                     .to_owned(),
             });
         }
-        Error::check_finite("twist", &asked.to_array())?;
-        Error::check_finite("point", &point.to_array())?;
+        Error::check_within("twist", &asked.to_array(), MAX_MAGNITUDE)?;
+        Error::check_within("point", &point.to_array(), MAX_MAGNITUDE)?;
         let pose = state.pose_of(tool);
         let coordinates = Chain::of(mechanism, tool).coordinates().to_vec();
         let at = |p: Vec3| self.at_point(state, (tool, pose), &coordinates, asked, p);

@@ -19,7 +19,7 @@ use crate::kinematics::{EndEffector, MassMatrix, State};
 use crate::linalg::Matrix;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Twist, Vec3};
-use crate::task::{Gaze, RelativeFrame, Task};
+use crate::task::{Gaze, RelativeFrame, Task, check_pose};
 use crate::tolerance::MAX_MAGNITUDE;
 
 /// A task defined by its user: an error and its Jacobian.
@@ -241,14 +241,10 @@ impl TaskObjective {
 
     /// Refuses what does not belong to the mechanism, and non-finite numbers.
     pub(super) fn check(&self, mechanism: &Mechanism) -> Result<()> {
-        let pose = |what: &str, pose: &Pose| match pose.is_finite() {
-            true => Ok(()),
-            false => Err(Error::NotFinite { what: what.to_owned(), value: f64::NAN }),
-        };
         match self {
             Self::Frame { end_effector, components, target } => {
                 mechanism.check_frame(end_effector.frame)?;
-                pose("tool of the frame", &end_effector.frame_from_tool)?;
+                check_pose("tool of the frame", &end_effector.frame_from_tool)?;
                 components.check()?;
                 target.check()
             }
@@ -263,7 +259,7 @@ impl TaskObjective {
             }
             Self::Manipulability { end_effector, components } => {
                 mechanism.check_frame(end_effector.frame)?;
-                pose("tool of the frame", &end_effector.frame_from_tool)?;
+                check_pose("tool of the frame", &end_effector.frame_from_tool)?;
                 components.check()?;
                 SecondaryTask::Manipulability { gain: 1.0 }.check(mechanism)
             }

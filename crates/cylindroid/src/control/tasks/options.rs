@@ -201,7 +201,7 @@ pub(super) fn check(
     check_coordinates("mechanism of a servo", mechanism.n())?;
     let positive = Error::check_positive;
     positive("dt", options.dt)?;
-    positive("length", options.length)?;
+    mechanism.length_or(Some(options.length))?;
     for (option, most) in [("acceleration", options.acceleration), ("jerk", options.jerk)] {
         if !(most > 0.0) {
             let reason = "it must be positive; infinity means no limit";
@@ -240,6 +240,12 @@ pub(super) fn check(
             return refuse("tasks", value, "a task has at most 1000");
         }
         positive("weight of a task", task.weight)?;
+        for tolerance in [task.tolerance.position, task.tolerance.orientation] {
+            if !(tolerance > 0.0) {
+                let value = tolerance.to_string();
+                return refuse("tolerance of a task", value, "it must be positive");
+            }
+        }
         if !(task.gain >= 0.0) {
             let value = task.gain.to_string();
             return refuse("gain of a task", value, "it must not be negative");

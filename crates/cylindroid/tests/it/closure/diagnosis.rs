@@ -3,7 +3,7 @@
 use cylindroid::closure::{
     ClosedChain, Diagnosis, FiniteMobility, GenericMobility, Mobility, SingularityKind, assemble,
 };
-use cylindroid::model::formats;
+use cylindroid::model::{JointKind, formats};
 use cylindroid::screws::Screw;
 use cylindroid::spatial::{Vec3, Wrench};
 use cylindroid::{Error, Mechanism, ReferenceFrame, catalogue};
@@ -197,5 +197,74 @@ fn strange_mechanisms_have_an_answer() {
         let chain = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap();
         let mobility = Mobility::of(&chain.constraint);
         assert_eq!((mobility.dof.dimension(), mobility.zero_torque.dimension()), (dof, 6 - dof));
+    }
+}
+
+/// A drive may turn a ball joint about one of its axes, or push a free body along one: the driven
+/// components are a vector, and the others another one.
+#[test]
+fn components_are_driven_one_by_one() {
+    for name in ["stewart", "delta", "two-arm"] {
+        let m = catalogue::load(name).unwrap();
+        let driven: Vec<&str> =
+            m.coordinates().iter().filter(|c| c.actuated).map(|c| c.name.as_str()).collect();
+        let mut vectors = m.joints().iter().filter(|j| {
+            matches!(j.kind, JointKind::Spherical | JointKind::Free) && j.mimic.is_none()
+        });
+        let last = vectors.next_back().unwrap();
+        for c in last.coordinates.clone() {
+            let one = m.coordinates()[c].name.as_str();
+            let m = m.with_actuated(&[&driven[..], &[one]].concat()).unwrap();
+            let chain = ClosedChain::of(&m.state(m.home()).unwrap(), None, None).unwrap();
+            let mobility = Mobility::of(&chain.constraint);
+            let found = at_home(&m);
+            let size = chain.actuated.len() + chain.passive.len();
+            assert_eq!(mobility.joints.len(), size, "{name}, {one}");
+            assert_eq!(found.counts.redundancy, mobility.redundancy.dimension(), "{name}, {one}");
+            let column = chain.actuated.iter().position(|n| n == one).unwrap();
+            assert!(!mobility.joints[column].free_of_actuators, "{name}, {one}");
+            // The others are one vector: components of it have one share.
+            let of = |n: &String| {
+                let other = m.coordinates()[last.coordinates.clone()].iter().any(|c| c.name == *n);
+                other
+                    && m.coordinates()[c].kind
+                        == m.coordinates()
+                            [m.coordinates().iter().position(|c| c.name == *n).unwrap()]
+                        .kind
+            };
+            let passive = chain.passive.iter().enumerate().filter(|(_, n)| of(n));
+            let shares: Vec<f64> =
+                passive.map(|(i, _)| mobility.joints[chain.actuated.len() + i].share).collect();
+            assert!(shares.len() >= 2, "{name}, {one}: {shares:?}");
+            assert!(shares.iter().all(|s| s == &shares[0]), "{name}, {one}: {shares:?}");
+        }
+    }
+}
+
+/// At round coordinates some residuals have no rounding, and Newton's method goes on far below it: one
+/// mobility, whatever the order of the joints.
+#[test]
+fn round_coordinates_converge() {
+    let joint = |name: &str, between: &str, origin: &str| {
+        format!(
+            "[[joint]]\nname = \"{name}\"\ntype = \"revolute\"\nbetween = {between}\norigin = {origin}\n"
+        )
+    };
+    for x in ["-3", "-3.1"] {
+        let mut joints = [
+            joint("shoulder", "[\"ground\", \"arm\"]", "[0, 0]\nactuated = true"),
+            joint("a1", "[\"ground\", \"a\"]", "[1, 1]"),
+            joint("a2", "[\"a\", \"b\"]", "[1, 0]"),
+            joint("a3", "[\"b\", \"ground\"]", &format!("[{x}, 0]")),
+            joint("a4", "[\"b\", \"ground\"]", "[3, 3]"),
+        ];
+        for _ in 0..5 {
+            joints.rotate_left(1);
+            let text = format!("dimension = 2\nreference = \"arm\"\n{}", joints.concat());
+            let m = formats::toml::parse(&text, std::path::Path::new("round.toml")).unwrap();
+            let found = at_home(&m);
+            assert_eq!((found.finite.finite, found.counts.redundancy), (Some(1), 0), "{found:?}");
+            assert!(found.verdict.is_regular(), "{found:?}");
+        }
     }
 }

@@ -13,16 +13,16 @@ use cylindroid::{Error, Mechanism};
 
 use crate::support::Random;
 
-const PLANE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: true };
-const SPACE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: false };
+pub(super) const PLANE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: true };
+pub(super) const SPACE: WrenchSpace = WrenchSpace { point: Vec3::ZERO, length: 1.0, planar: false };
 
-fn finger(point: [f64; 3], normal: [f64; 3], friction: Friction) -> FingerContact {
+pub(super) fn finger(point: [f64; 3], normal: [f64; 3], friction: Friction) -> FingerContact {
     let vec3 = |v: [f64; 3]| Vec3::new(v[0], v[1], v[2]);
     let curvature = ContactCurvature::default();
     FingerContact { point: vec3(point), normal: vec3(normal), friction, strength: 1.0, curvature }
 }
 
-fn quality(contacts: &[FingerContact], space: WrenchSpace) -> GraspQuality {
+pub(super) fn quality(contacts: &[FingerContact], space: WrenchSpace) -> GraspQuality {
     grasp_quality(contacts, space, GraspMetric::L1).unwrap()
 }
 
@@ -324,7 +324,7 @@ fn descended(random: &mut Random, contacts: &[FingerContact], metric: GraspMetri
 }
 
 /// The farthest wrench of a finger along `n`, by the geometry of its cone.
-fn support_of(contact: &FingerContact, n: &[f64]) -> f64 {
+pub(super) fn support_of(contact: &FingerContact, n: &[f64]) -> f64 {
     let (f, m) = (Vec3::new(n[0], n[1], n[2]), Vec3::new(n[3], n[4], n[5]));
     // Power of a unit force at the contact along the "twist" n.
     let velocity = f + m.cross(contact.point);

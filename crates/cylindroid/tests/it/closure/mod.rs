@@ -16,6 +16,7 @@ mod linkage;
 mod long_chains;
 mod mobility;
 mod modes;
+mod open_grasps;
 mod reference;
 mod rings;
 mod scaling;

@@ -1,9 +1,12 @@
 //! The characteristic length: of every mechanism, whatever the frame, order and drawn points.
 
+use cylindroid::closure::{Diagnosis, FiniteMobility, LimbScrews};
+use cylindroid::ik::{Goal, IkOptions, solve};
 use cylindroid::linalg::Svd;
 use cylindroid::model::{Geometry, JointKind, JointSpec, Limits, Visual};
-use cylindroid::spatial::{Pose, Rotation, Vec3};
-use cylindroid::{Mechanism, ReferenceFrame, catalogue};
+use cylindroid::screws::ScrewOptions;
+use cylindroid::spatial::{Pose, Rotation, Twist, Vec3};
+use cylindroid::{Error, Mechanism, ReferenceFrame, ScrewSystem, ServoOptions, catalogue};
 
 use crate::support::assert_close;
 
@@ -160,4 +163,47 @@ fn mechanisms_without_a_size_are_refused() {
     // Nanometres work.
     let small = pan_and_tilt(1e-9, 1e-9).unwrap().reach();
     assert!(small > 0.5e-9 && small < 4e-9, "{small}");
+}
+
+/// Ranks are those of the mechanism at all lengths of about its size; others are refused, as are
+/// lengths that no mechanism has.
+#[test]
+fn lengths_of_another_size_are_refused() {
+    for name in catalogue::names() {
+        let m = catalogue::load(name).unwrap();
+        let state = m.state(m.home()).unwrap();
+        let of = |length: f64| {
+            let diagnosis = Diagnosis::of(&state, None, Some(length))?;
+            let finite = FiniteMobility::of(&state, Some(length))?;
+            Ok((diagnosis.counts, finite.infinitesimal))
+        };
+        let own = of(m.reach()).unwrap();
+        for factor in [1.1e-5, 1e-3, 0.1, 7.0, 1e3, 0.9e5] {
+            assert_eq!(of(factor * m.reach()).unwrap(), own, "{name}, {factor:e}");
+        }
+        for length in [0.9e-5 * m.reach(), 1.1e5 * m.reach(), 1e300, 1e-300, 0.0, -1.0, f64::NAN] {
+            let refused: cylindroid::Result<_> = of(length);
+            let Error::InvalidOption { option: "length", reason, .. } = refused.unwrap_err() else {
+                panic!("{name}, {length}")
+            };
+            assert!(reason.contains(name), "{reason}");
+            assert!(LimbScrews::of(&state, None, Some(length)).is_err(), "{name}, {length}");
+            let options = IkOptions { length: Some(length), ..IkOptions::default() };
+            if !m.is_closed() {
+                let target = state.pose(m.tool()).unwrap();
+                assert!(solve(&m, &[Goal::pose(m.tool(), target)], &options).is_err(), "{name}");
+                let options = ServoOptions { length, ..ServoOptions::new(&m) };
+                assert!(options.check(&m).is_err(), "{name}, {length}");
+            }
+        }
+    }
+    let twist = Twist { linear: Vec3::X, angular: Vec3::Z };
+    for length in [0.9e-12, 1.1e120, f64::INFINITY, f64::NAN, 0.0, -1.0] {
+        let refused = ScrewSystem::of(&[twist], &ScrewOptions::with_length(length)).unwrap_err();
+        assert!(matches!(refused, Error::InvalidOption { option: "length", .. }), "{refused}");
+    }
+    let center = Some(Vec3::new(0.0, 0.0, 1.1e120));
+    let far = ScrewOptions { center, ..ScrewOptions::default() };
+    let refused = ScrewSystem::of(&[twist], &far).unwrap_err();
+    assert!(matches!(refused, Error::OutOfRange { .. }), "{refused}");
 }

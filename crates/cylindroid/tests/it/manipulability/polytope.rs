@@ -139,6 +139,15 @@ fn limits_that_are_none() {
         let error = velocity_polytope(&relation, &symmetric(limits)).unwrap_err().to_string();
         assert!(error.starts_with("velocity limit"), "{error}");
     }
+    // Without a size that can be squared.
+    for limits in [[1e-121, 1.0], [1.0, 1.1e120], [5e-324, 5e-324]] {
+        let error = velocity_range(&relation, &symmetric(&limits)).unwrap_err().to_string();
+        assert!(error.contains("from 1e-120 to 1e120"), "{error}");
+    }
+    let range = velocity_range(&relation, &symmetric(&[1e-120, 1e120])).unwrap();
+    for (r, l) in range.iter().zip([1e-120, 1e120]) {
+        assert!((r.upper / l - 1.0).abs() < 1e-14 && r.lower == -r.upper, "{range:?}");
+    }
     // Nothing driven: nothing moves on command.
     let none = velocity_polytope(&serial(&Matrix::zeros(3, 0)), &[]).unwrap();
     assert_eq!((none.hull.vertices.len(), none.hull.span.cols()), (1, 0));

@@ -42,6 +42,7 @@ calls! {
     control::JointMove::sample_into;
     control::JointMove::scaled_to_duration;
     control::JointMove::within_limits;
+    control::JointMove::within_tool_speed = |m: control::JointMove, of: &'static Mechanism, tool: EndEffector, speed: control::SpeedLimit| m.within_tool_speed(of, tool, speed);
     control::JointPath::displacement;
     control::JointPath::dof;
     control::JointPath::new;

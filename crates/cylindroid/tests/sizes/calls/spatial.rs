@@ -6,6 +6,7 @@ calls! {
     error::Error::check_finite;
     error::Error::check_len;
     error::Error::check_positive;
+    error::Error::check_range = |option: &'static str, value: f64| Error::check_range(option, value, &(0.1..=1.0));
     error::Error::check_within;
     error::Error::unknown = |what: &'static str, name: &'static str, known: &'static [&'static str]| Error::unknown(what, name, known);
     spatial::Derivative6::apply;
