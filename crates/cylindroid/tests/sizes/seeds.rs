@@ -147,6 +147,8 @@ fn whole_robots(world: &mut World) {
     let columns = Matrix::from_fn(6, 3, |i, j| ((i + 2 * j) % 5) as f64 - 1.5);
     let system = ScrewSystem::of_columns(&columns, &options).unwrap();
     system.pitch_conics().into_iter().for_each(|conics| world.keep(conics));
+    let svd = hyperbolic_svd(&columns, 0.1, &options, None);
+    svd.into_iter().for_each(|svd| world.keep(svd));
     let stiffness = Matrix::identity(6);
     screws::eigenscrews(&stiffness, 0.5).into_iter().for_each(|all| world.keep(all));
     let map = MapOptions {
@@ -352,6 +354,8 @@ fn control(world: &mut World) {
     let none = KinematicBounds { velocity: 0.0, acceleration: 0.0, jerk: 0.0 };
     all(world, &[bounds, none]);
     all(world, &[CartesianBounds { linear: bounds, angular: bounds }]);
+    let none = SpeedLimit { linear: 0.0, angular: 0.0 };
+    all(world, &[none, SpeedLimit { linear: 0.1, angular: f64::INFINITY }]);
     all(world, &[JointDefaults { angle: bounds, length: bounds }]);
     all(
         world,
