@@ -11,7 +11,9 @@ use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::Path;
 
 use bytes::Bytes;
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::basic::Encoding;
+use parquet::column::page::{Page, PageMetadata, PageReader};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
@@ -53,6 +55,50 @@ impl Read for Bounded<BufReader<File>> {
             0 if !buffer.is_empty() => Err(ErrorKind::UnexpectedEof.into()),
             count => Ok(count),
         }
+    }
+}
+
+/// Pages of which none is in terms of a dictionary before that has come, at which Parquet's reader would
+/// panic.
+struct Ordered {
+    pages: Box<dyn PageReader>,
+    has_dictionary: bool,
+}
+
+impl Iterator for Ordered {
+    type Item = Result<Page, ParquetError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.get_next_page().transpose()
+    }
+}
+
+impl PageReader for Ordered {
+    fn get_next_page(&mut self) -> Result<Option<Page>, ParquetError> {
+        let page = self.pages.get_next_page()?;
+        let encoding = match &page {
+            Some(Page::DictionaryPage { .. }) => {
+                self.has_dictionary = true;
+                None
+            }
+            Some(Page::DataPage { encoding, .. } | Page::DataPageV2 { encoding, .. }) => {
+                Some(*encoding)
+            }
+            None => None,
+        };
+        let refers = [Encoding::PLAIN_DICTIONARY, Encoding::RLE_DICTIONARY].map(Some);
+        if refers.contains(&encoding) && !self.has_dictionary {
+            return Err(ParquetError::General("a page before its dictionary".to_owned()));
+        }
+        Ok(page)
+    }
+
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>, ParquetError> {
+        self.pages.peek_next_page()
+    }
+
+    fn skip_next_page(&mut self) -> Result<(), ParquetError> {
+        self.pages.skip_next_page()
     }
 }
 
@@ -111,7 +157,9 @@ fn read_columns(
         let mut columns = Vec::with_capacity(n);
         for (&place, name) in places.iter().zip(names) {
             check_place(group.metadata().column(place)).map_err(refuse)?;
-            let of = group.get_column_reader(place).map_err(because)?;
+            let pages = group.get_column_page_reader(place).map_err(because)?;
+            let pages = Box::new(Ordered { pages, has_dictionary: false });
+            let of = get_column_reader(metadata.schema_descr().column(place), pages);
             match read(of, rows).map_err(because)? {
                 Ok(column) => columns.push(column),
                 Err(row) => {

@@ -170,6 +170,10 @@ fn a_part_is_a_file_of_configurations() {
     // A list of 2^31 numbers beyond the end of the file, in the header of a page.
     let error = read("end-of-file.parquet").unwrap_err().to_string();
     assert!(error.contains("end of file"), "{error}");
+    // A page in terms of a dictionary that is not there.
+    let page = parquet_columns(&findings.join("page-before-dictionary.parquet"), &["q1", "q.q2"]);
+    let error = page.unwrap_err().to_string();
+    assert!(error.contains("a page before its dictionary"), "{error}");
     if cfg!(unix) {
         // A pipe waits for its writer.
         let pipe = folder.path().join("pipe.parquet");
