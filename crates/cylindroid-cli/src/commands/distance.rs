@@ -76,7 +76,7 @@ pub(crate) fn run(args: &DistanceArgs, style: Style, out: &mut dyn Write) -> any
         collision_model(&robot, &args.collision, args.configuration.model.srdf.as_deref())?;
     let state = robot.state(&configuration(&robot, &args.configuration)?)?;
     let mut near: Vec<NearPair> = Vec::new();
-    // Pairs that touch decide on the answer, whatever is asked for.
+    // Pairs that touch decide on the answer, whatever is asked for. NaN is left for `near` to refuse.
     let margin = if args.margin < 0.0 { 0.0 } else { args.margin };
     model.near(&state, margin, &mut near)?;
     let free = near.iter().all(|n| n.distance >= 0.0);

@@ -7,7 +7,7 @@
 //! Valid    any convex body; few points carry x at a time, at most d + 1
 //! Why so   a hull has no facet between the origin and the nearest point where that is a corner
 //! Source   Wolfe 1976
-//! Checked  tests in this file, tests/it/closure/grasp.rs
+//! Checked  tests in this file, tests/it/closure/open_grasps.rs
 
 use super::smallest_support::Vector;
 use crate::error::all_finite;
@@ -28,8 +28,8 @@ pub(super) struct NearestPoint {
     pub(super) away: Vector,
 }
 
-/// Of the body with these farthest points along directions, entries beyond `d` are zero. Both bounds
-/// differ by roundings of `size` at best.
+/// Of the body with these farthest points along directions, whose entries beyond `d` are zero; its size
+/// is the largest norm of its points. The search ends when both bounds agree to [`HULL`] of it.
 pub(super) fn nearest_point(
     d: usize,
     size: f64,

@@ -8,7 +8,8 @@
 //!          hull, "shell" the triangles: areas for volumes, 1/12 for 1/20
 //! Units    of the vertices (m): V in m^3, or m^2 of a shell; I per kg in m^2
 //! Valid    "exact" for closed meshes whose triangles agree in their orientation
-//! Fails    `None` without triangles, without a hull that encloses all vertices, or for a volume that is not positive
+//! Fails    `None` without triangles, without a hull that encloses all vertices, or for a volume that
+//!          is not positive
 //! Source   mujoco.readthedocs.io, XML reference, asset/mesh/inertia; the integrals: Mirtich 1996
 //! Checked  tests/formats/mesh_masses.rs (against MuJoCo)
 
