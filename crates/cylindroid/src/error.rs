@@ -164,7 +164,7 @@ impl Error {
         }
         Err(Self::InvalidOption {
             option,
-            value: value.to_string(),
+            value: number_text(value),
             reason: "it must be positive and finite".to_owned(),
         })
     }

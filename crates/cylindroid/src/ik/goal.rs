@@ -8,7 +8,8 @@ use crate::error::{Error, Result};
 use crate::kinematics::EndEffector;
 use crate::model::Mechanism;
 use crate::spatial::{Pose, Vec3};
-use crate::task::{Gaze, RelativeFrame, Task, check_pose};
+use crate::task::{Gaze, RelativeFrame, Task, check_pose, check_target};
+use crate::tolerance::MAX_MAGNITUDE;
 
 /// Weights whose squares, and the products with those of errors, are numbers [-].
 const WEIGHTS: RangeInclusive<f64> = 1e-100..=1e100;
@@ -76,18 +77,15 @@ impl Objective {
             Self::Frame { end_effector, components, target } => {
                 mechanism.check_frame(end_effector.frame)?;
                 check_pose("frame_from_tool of the end effector", &end_effector.frame_from_tool)?;
-                Error::check_finite("target position", &target.translation.to_array())?;
-                if !target.is_finite() {
-                    let what = "target orientation".to_owned();
-                    return Err(Error::NotFinite { what, value: f64::NAN });
-                }
+                check_target(&target)?;
                 components.check()
             }
             Self::RelativeFrame { end_effector, reference, components, target } => {
                 RelativeFrame { end_effector, reference, components, target }.check(mechanism)
             }
             Self::CenterOfMass { axes, target } => {
-                Error::check_finite("target of the centre of mass", &target.to_array())?;
+                let what = "target of the centre of mass";
+                Error::check_within(what, &target.to_array(), MAX_MAGNITUDE)?;
                 if !axes.contains(&true) {
                     return Err(Error::InvalidOption {
                         option: "axes of the centre of mass",

@@ -49,6 +49,7 @@ pub struct Builder {
     pub(super) disabled_collisions: Vec<[String; 2]>,
     pub(super) joints: Vec<JointSpec>,
     pub(super) loops: Vec<LoopJointSpec>,
+    pub(super) halves: BTreeSet<String>,
     contacts: Vec<ContactSpec>,
     dimension: Dimension,
     pub(super) frames: Vec<(String, String, Pose)>,
@@ -71,6 +72,7 @@ impl Builder {
             disabled_collisions: Vec::new(),
             joints: Vec::new(),
             loops: Vec::new(),
+            halves: BTreeSet::new(),
             contacts: Vec::new(),
             dimension: Dimension::Spatial,
             frames: Vec::new(),
@@ -417,8 +419,9 @@ impl Builder {
         let (tool, tool_choice) = match &self.tool {
             Some(name) => (named("tool", name)?, ToolChoice::Named),
             None => {
-                let (joints, loops, by_name) = (&self.joints, &self.loops, self.by_name);
-                DefaultTool { order, joints, loops, links, frames: &frames, by_name }.choose()
+                let Self { joints, loops, halves, .. } = &self;
+                let (frames, by_name) = (&frames, self.by_name);
+                DefaultTool { order, joints, loops, halves, links, frames, by_name }.choose()
             }
         };
         let reference = match &self.reference {

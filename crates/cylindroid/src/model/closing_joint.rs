@@ -36,6 +36,8 @@ impl Builder {
             actuated: joint.actuated,
             ..JointSpec::new(&joint.name, joint.kind, &joint.a, &half)
         });
+        // No end of a chain (`default_tool.rs`).
+        self.halves.insert(half.clone());
         self.loop_joint(LoopJointSpec {
             link_a_from_joint: Pose::IDENTITY,
             link_b_from_joint: joint.link_b_from_joint,

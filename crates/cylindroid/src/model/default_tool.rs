@@ -10,6 +10,7 @@
 //!          branches that are shorter than the chain before them, or the rest of a loop
 //! Among    frames of one group: fewest other words, most moving joints, sites before links, most
 //!          joints, fewest words, the last in the file
+//! Loops    joints that close one do not count
 //! Chain    without such a name: the branch with the most moving joints at every fork, until its rest
 //!          is shorter than the chain before it (fingers of a hand), then the last link fixed there
 //!          that is no sensor. Floating bases count as moving joints if nothing else moves
@@ -17,7 +18,7 @@
 //!          files with joints of the corpus (`cargo xtask corpus`)
 //! Checked  tests/formats/tool.rs
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::joint::JointKind;
 use super::joint_spec::JointSpec;
@@ -87,6 +88,8 @@ pub(super) struct DefaultTool<'a> {
     pub(super) order: &'a TreeOrder,
     pub(super) joints: &'a [JointSpec],
     pub(super) loops: &'a [LoopJointSpec],
+    /// Links that are halves of others: what closes a loop does not lengthen a chain.
+    pub(super) halves: &'a BTreeSet<String>,
     pub(super) links: &'a BTreeMap<String, usize>,
     /// Links first, then named frames.
     pub(super) frames: &'a [Frame],
@@ -118,7 +121,9 @@ impl DefaultTool<'_> {
         let loops = Loops::of(self);
         let mut ends = vec![None; self.links.len()];
         let longest = depths.above.iter().map(|d| d.0).max().unwrap_or(0);
-        let named = self.frames.iter().enumerate().filter_map(|(i, frame)| {
+        let whole = |frame: &Frame| !self.halves.contains(&self.frames[frame.link].name);
+        let all = self.frames.iter().enumerate().filter(|(_, frame)| whole(frame));
+        let named = all.filter_map(|(i, frame)| {
             let meaning = Meaning::of(&frame.name)?;
             let (moving, all) = depths.above[frame.link];
             let enough = if meaning.word == FEET[0] || meaning.word == FEET[1] {
@@ -173,7 +178,7 @@ impl DefaultTool<'_> {
             bodies: (0..n).collect(),
             beyond: vec![Vec::new(); n],
         };
-        for &j in &self.order.joints {
+        for j in self.joints_of_chains() {
             let (parent, child) = self.ends(j);
             depths.children[parent].push((j, child));
             let body = depths.bodies[parent];
@@ -185,7 +190,7 @@ impl DefaultTool<'_> {
             let (moving, all) = depths.above[parent];
             depths.above[child] = (moving + usize::from(depths.moves[j]), all + 1);
         }
-        for &j in self.order.joints.iter().rev() {
+        for j in self.joints_of_chains().rev() {
             let (parent, child) = self.ends(j);
             let (moving, end) = depths.below[child];
             let through = (moving + usize::from(depths.moves[j]), end);
@@ -194,6 +199,12 @@ impl DefaultTool<'_> {
             }
         }
         depths
+    }
+
+    /// The joints of the tree without those of halves, parents first.
+    fn joints_of_chains(&self) -> impl DoubleEndedIterator<Item = usize> + '_ {
+        let all = self.order.joints.iter().copied();
+        all.filter(|&j| !self.halves.contains(&self.joints[j].child))
     }
 
     /// Parent and child of a joint.

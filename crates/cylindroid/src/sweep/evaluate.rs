@@ -66,6 +66,7 @@ impl Evaluator {
     pub(super) fn new(mechanism: &Mechanism, options: &SweepOptions) -> Result<Self> {
         let wants = |quantity| options.quantities.contains(&quantity);
         let (end_effector, length) = options.place(mechanism)?;
+        Error::check_finite("direction", &options.direction.to_array())?;
         let relative = Relative::new(mechanism, options, end_effector)?;
         if mechanism.is_closed()
             && let Some(quantity) = options.quantities.iter().find(|q| !q.has_loops())

@@ -39,7 +39,6 @@ impl Payload {
             let value = format!("{},{},{}", direction.x, direction.y, direction.z);
             Err(Error::InvalidOption { option, value, reason: reason.to_owned() })
         };
-        Error::check_finite("direction", &direction.to_array())?;
         let Some(direction) = direction.unit(0.0) else {
             return refuse("direction", "it has no length; give one such as 0,0,-1");
         };

@@ -17,6 +17,15 @@ use crate::error::{Error, Result};
 use crate::spatial::{Pose, Twist};
 use crate::tolerance::MAX_MAGNITUDE;
 
+/// Refuses a target that is not finite, or too far away for finite results.
+pub(crate) fn check_target(target: &Pose) -> Result<()> {
+    Error::check_within("target position", &target.translation.to_array(), MAX_MAGNITUDE)?;
+    if !target.is_finite() {
+        return Err(Error::NotFinite { what: "target orientation".to_owned(), value: f64::NAN });
+    }
+    Ok(())
+}
+
 /// Refuses a pose that is not finite, or too far away for finite results.
 pub(crate) fn check_pose(what: &str, pose: &Pose) -> Result<()> {
     if !pose.is_finite() {

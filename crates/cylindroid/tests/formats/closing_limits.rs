@@ -116,6 +116,29 @@ fn mobility_is_that_without_limits() {
     assert!(near.closed && near.q.iter().all(|q| q.abs() < 0.5), "{near:?}");
 }
 
+/// Without a name for it, the tool is on the same link whichever link of a joint is written first, and
+/// whether all joints are actuated or one.
+#[test]
+fn the_default_tool_does_not_depend_on_the_joint_that_closes() {
+    for (swapped, _, _) in JOINTS {
+        for all_actuated in [false, true] {
+            let mut text = "dimension = 2\n".to_owned();
+            for (name, between, origin) in JOINTS {
+                let [a, b] = between[1..between.len() - 1].split_once(", ").unwrap().into();
+                let [a, b] = if name == swapped { [b, a] } else { [a, b] };
+                let actuated = all_actuated || name == "crank";
+                text += &format!(
+                    "[[joint]]\nname = \"{name}\"\ntype = \"revolute\"\nbetween = [{a}, {b}]\n\
+                     origin = {origin}\nactuated = {actuated}\n",
+                );
+            }
+            let mechanism = read(&text);
+            assert_eq!(mechanism.n(), if all_actuated { 4 } else { 3 });
+            assert_eq!(mechanism.frame_of(mechanism.tool()).name, "coupler", "{text}");
+        }
+    }
+}
+
 /// Loops of spatial joints with limits: the ball of a strut.
 #[test]
 fn loops_in_space_are_cut_in_a_link() {

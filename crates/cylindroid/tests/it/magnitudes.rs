@@ -2,7 +2,8 @@
 //! other mechanisms are errors.
 
 use cylindroid::closure::{ModeOptions, frame_twists, operation_modes};
-use cylindroid::ik::{Analytic, NotSolvable};
+use cylindroid::control::{Servo, ServoOptions};
+use cylindroid::ik::{Analytic, Budget, Goal, IkOptions, NotSolvable, Objective, solve};
 use cylindroid::kinematics::{Chain, KinematicsBatch, OrientationRates};
 use cylindroid::manipulability::{BatchOptions, ManipulabilityBatch, body_inertia};
 use cylindroid::model::{Inertial, JointKind, JointSpec, Limits, Link};
@@ -78,6 +79,39 @@ fn numbers_beyond_the_range_are_refused_by_name() {
     });
     let message = builder.build().unwrap_err().to_string();
     assert!(message.contains("limit of joint 'turn' is 1.8e300"), "{message}");
+}
+
+/// Of servos, of inverse kinematics and of closed forms: within the range they are out of reach, beyond
+/// it an error.
+#[test]
+fn targets_are_as_far_as_the_range() {
+    for name in ["panda", "puma560", "3rps"] {
+        let robot = catalogue::load(name).unwrap();
+        let tool = robot.tool();
+        for far in [0.9 * MAX_MAGNITUDE, -1.1 * MAX_MAGNITUDE, 1e308] {
+            let point = Vec3::new(0.1, far, 0.2);
+            let target = Pose::from_translation(point);
+            let centre = Objective::CenterOfMass { axes: [true; 3], target: point };
+            let options =
+                IkOptions { budget: Budget { iterations: 5, time: None }, ..IkOptions::default() };
+            let mut servo = Servo::new(&robot, ServoOptions::new(&robot)).unwrap();
+            let mut all = vec![
+                servo.step(robot.home(), target).err(),
+                solve(&robot, &[Goal::pose(tool, target)], &options).err(),
+                solve(&robot, &[centre.into()], &options).err(),
+            ];
+            if let Ok(mut analytic) = Analytic::of(&robot, tool) {
+                all.push(analytic.solve(target, robot.home()).err());
+            }
+            for error in all {
+                let told = error.map(|e| e.to_string());
+                let is_refused = told.as_ref().is_some_and(|t| {
+                    t.starts_with("target") && t.contains("magnitudes up to 1e120")
+                });
+                assert_eq!(is_refused, far.abs() > MAX_MAGNITUDE, "{name} {far:e}: {told:?}");
+            }
+        }
+    }
 }
 
 /// Poses, Jacobians, twists and measures of a frame, chains, batches and closed forms.

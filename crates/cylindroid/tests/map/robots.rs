@@ -57,6 +57,24 @@ pub(crate) fn five_bar_at(world_from_ground: Pose, scale: f64) -> Mechanism {
     )
 }
 
+/// A five-bar with these pivots, ends of its cranks, and tip.
+pub(crate) fn five_bar_with(
+    [left, right]: [[f64; 2]; 2],
+    [first, second]: [[f64; 2]; 2],
+    tip: [f64; 2],
+) -> Mechanism {
+    planar(
+        &format!("reference = \"coupler\"\nreference_point = {tip:?}"),
+        &[
+            (["q1", "revolute"], ["ground", "crank"], left, "actuated = true"),
+            (["q2", "revolute"], ["crank", "coupler"], first, ""),
+            (["q3", "revolute"], ["coupler", "rod"], tip, ""),
+            (["q4", "revolute"], ["rod", "rocker"], second, ""),
+            (["q5", "revolute"], ["ground", "rocker"], right, "actuated = true"),
+        ],
+    )
+}
+
 /// A planar platform on three legs of variable length between the base points and those of the
 /// platform, which is at the origin at home.
 pub(crate) fn three_rpr(base: [[f64; 2]; 3], platform: [[f64; 2]; 3], limits: &str) -> Mechanism {

@@ -210,6 +210,67 @@ fn balls_of_a_five_bar_are_those_of_its_circles() {
     }
 }
 
+/// Of any size and in any way to assemble: circles where a leg is straight or folded, and where both
+/// rods are on one line, in the way of the centre.
+#[test]
+fn balls_of_random_five_bars_are_those_of_a_dense_search() {
+    // The first, and some of the next thousand whose bound had been one of another way to assemble
+    // beside a straight leg, or the end of a ray before a folded leg.
+    let hard = [40, 115, 416, 459, 524, 567, 679, 717, 828];
+    let mut random = crate::support::Random(20);
+    for number in 0..1000 {
+        let mut point = || [random.within(-1.5, 1.5), random.within(-1.5, 1.5)];
+        let (ends, tip) = ([point(), point()], point());
+        if number >= 12 && !hard.contains(&number) {
+            continue;
+        }
+        let bases = [[-0.6, 0.0], [0.6, 0.1]];
+        let from = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| [bx - ax, by - ay];
+        let cross = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| ax * by - ay * bx;
+        let size = |[x, y]: [f64; 2]| x.hypot(y);
+        let legs: [_; 2] = std::array::from_fn(|i| {
+            let (crank, rod) = (from(bases[i], ends[i]), from(ends[i], tip));
+            (bases[i], [size(crank), size(rod)], cross(crank, rod).signum())
+        });
+        // The rods that end at a point, by the law of cosines.
+        let rods = |p: [f64; 2]| {
+            legs.map(|(base, [crank, rod], side)| {
+                let v = from(base, p);
+                let d = size(v);
+                let cos = (d * d + crank * crank - rod * rod) / (2.0 * d * crank);
+                let sin = side * (1.0 - cos * cos).max(0.0).sqrt();
+                let [x, y] = v.map(|x| x * crank / d);
+                [v[0] - cos * x - sin * y, v[1] + sin * x - cos * y]
+            })
+        };
+        let along = |d: &[f64]| {
+            // Roots of quadratic equations on the circles.
+            let on_circles = legs.iter().flat_map(|(base, [crank, rod], _)| {
+                let v = from(*base, tip);
+                let half = v[0] * d[0] + v[1] * d[1];
+                [crank + rod, (crank - rod).abs()]
+                    .map(|r| half * half - size(v).powi(2) + r * r)
+                    .into_iter()
+                    .flat_map(move |root| [-half - root.sqrt(), -half + root.sqrt()])
+            });
+            let circle = on_circles.filter(|t| *t > 0.0).fold(4.0, f64::min);
+            let aligned = |t: f64| {
+                let [a, b] = rods([tip[0] + t * d[0], tip[1] + t * d[1]]);
+                cross(a, b)
+            };
+            first_root(aligned, circle).min(circle)
+        };
+        let expected = smallest(2, false, along);
+        if expected < 1e-3 {
+            continue;
+        }
+        let mechanism = crate::robots::five_bar_with(bases, ends, tip);
+        let found = zone(&mechanism, &["x", "y"], ZoneOptions::default());
+        let off = (found.size - expected).abs();
+        assert!(off < 1e-6 * expected, "{number}: {} {expected}", found.size);
+    }
+}
+
 /// The six legs of the platform of the catalogue: Pluecker coordinates, a cubic in the position.
 #[test]
 fn balls_of_a_stewart_platform_are_those_of_a_dense_search() {

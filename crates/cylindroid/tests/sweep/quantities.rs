@@ -8,7 +8,7 @@ use cylindroid::screws::{Class, ScrewOptions};
 use cylindroid::sweep::{
     Quantity, Source, Statistics, Sweep, SweepOptions, Values, VelocityMetric,
 };
-use cylindroid::{Matrix, ReferenceFrame, ScrewSystem};
+use cylindroid::{Matrix, ReferenceFrame, ScrewSystem, Vec3};
 
 use crate::{configurations, of, samples};
 
@@ -304,6 +304,8 @@ fn quantities_that_do_not_exist_are_refused() {
     assert!(refused("panda", with_task(none)).contains("at least one"));
     let length = SweepOptions { length: Some(0.0), ..Default::default() };
     assert!(refused("panda", length).contains("within a factor of 1e5"));
+    let direction = SweepOptions { direction: Vec3::new(0.0, f64::NAN, 1.0), ..Default::default() };
+    assert!(refused("panda", direction).starts_with("direction[1]"));
     let metric = VelocityMetric::Limits;
     let limits = SweepOptions { metric, ..with(&[Quantity::Yoshikawa]) };
     assert!(refused("puma560", limits).contains("no velocity limit"));

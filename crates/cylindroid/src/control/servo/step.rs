@@ -6,6 +6,7 @@ use super::options::ServoOptions;
 use crate::control::solver::saturation::Saturation;
 use crate::error::{Error, Result};
 use crate::spatial::{Pose, Rotation, Twist};
+use crate::task::check_target;
 use crate::tolerance::MAX_MAGNITUDE;
 
 /// A moving target.
@@ -24,12 +25,9 @@ impl From<Pose> for Target {
 }
 
 impl Target {
-    /// Checks for non-finite values.
+    /// Checks for values that are not finite or out of range.
     pub(in crate::control) fn check(&self) -> Result<()> {
-        Error::check_finite("target position", &self.pose.translation.to_array())?;
-        if !self.pose.is_finite() {
-            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
-        }
+        check_target(&self.pose)?;
         Error::check_within("feed-forward twist", &self.feed_forward.to_array(), MAX_MAGNITUDE)
     }
 

@@ -254,8 +254,10 @@ impl TaskObjective {
                 RelativeFrame { end_effector, reference, components, target }.check(mechanism)
             }
             Self::CenterOfMass { target, velocity, .. } => {
-                Error::check_finite("target of the centre of mass", &target.to_array())?;
-                Error::check_finite("velocity of the centre of mass", &velocity.to_array())
+                let what = "target of the centre of mass";
+                Error::check_within(what, &target.to_array(), MAX_MAGNITUDE)?;
+                let what = "velocity of the centre of mass";
+                Error::check_within(what, &velocity.to_array(), MAX_MAGNITUDE)
             }
             Self::Manipulability { end_effector, components } => {
                 mechanism.check_frame(end_effector.frame)?;

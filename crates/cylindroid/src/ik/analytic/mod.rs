@@ -32,6 +32,7 @@ use crate::linalg::{Damped, DampedProblem, Matrix};
 use crate::model::Mechanism;
 use crate::scalar::{clamp, nearest_turn, uniform};
 use crate::spatial::{Pose, Rotation, Twist};
+use crate::task::check_target;
 use crate::tolerance::{ANALYTIC_AT_LIMIT, ANALYTIC_CONFIRMED, ANALYTIC_EXACT, ANALYTIC_REFINED};
 
 pub use self::geometry::ArmGeometry;
@@ -324,11 +325,7 @@ impl Analytic {
     pub(super) fn check(&self, target: Pose, start: &[f64]) -> Result<()> {
         Error::check_len("start", self.q.len(), start.len())?;
         Error::check_finite("start", start)?;
-        Error::check_finite("target position", &target.translation.to_array())?;
-        if !target.is_finite() {
-            return Err(Error::NotFinite { what: "target orientation".into(), value: f64::NAN });
-        }
-        Ok(())
+        check_target(&target)
     }
 
     /// The closed form for other values of the locked joints.

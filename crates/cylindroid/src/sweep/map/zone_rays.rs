@@ -21,6 +21,8 @@ const SHORTEST: f64 = 1.0 / 512.0;
 const NEAR: f64 = 0.5;
 /// Distance to a singularity at which a ray ends [-].
 const SINGULAR: f64 = 1e-6;
+/// Largest difference of the coordinates of one configuration [rad, or characteristic lengths].
+const SAME: f64 = 1e-4;
 
 /// Why a ray ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,6 +56,8 @@ pub(super) struct Shot {
 pub(super) struct Rays {
     path: PlatformPath,
     event: SignedSingularity,
+    /// Number of the coordinates of the mechanism, which come before those of its platform.
+    joints: usize,
     start: PathNode,
     block: Matrix,
     /// Smallest generic singular value, and the distance with its sign.
@@ -64,12 +68,30 @@ impl Rays {
     pub(super) fn new(
         mut path: PlatformPath,
         event: SignedSingularity,
-        centre: &[f64],
+        (centre, joints): (&[f64], usize),
     ) -> Result<Self> {
         let start = path.node(centre)?;
         let block = event.block(&path.equations.jacobian);
         let value = values(&event, &block);
-        Ok(Self { path, event, start, block, value })
+        Ok(Self { path, event, joints, start, block, value })
+    }
+
+    /// True if the rest of a ray, from its last configuration to the components of `q`, comes to `q`
+    /// or to another singularity of the other block, or is obstructed there.
+    pub(super) fn comes_to(&mut self, q: &[f64], last: &Shot, about: &CentredNorm) -> Result<bool> {
+        let from = self.path.node(&last.q)?;
+        let goal: Vec<f64> = about.places.iter().map(|&i| q[i]).collect();
+        let Ok(node) = self.path.go(&from, &goal)? else { return Ok(true) };
+        self.path.equations.set(&node.q)?;
+        let block = self.event.block(&self.path.equations.jacobian);
+        Ok(self.apart(&node.q, q) < SAME || values(&self.event, &block).1.abs() < SINGULAR)
+    }
+
+    /// The largest difference of the coordinates of two configurations [rad, or characteristic
+    /// lengths].
+    pub(super) fn apart(&self, a: &[f64], b: &[f64]) -> f64 {
+        let all = a.iter().zip(b).take(self.joints).enumerate();
+        all.fold(0.0, |most, (i, (a, b))| most.max(((a - b) / self.path.equations.unit(i)).abs()))
     }
 
     /// Distances of the centre to singularities of both blocks.

@@ -208,7 +208,7 @@ impl Search {
             CurveTracer::new(problem.equations.clone(), vanishing, domain, unknown)
         };
         let path = PlatformPath::new(problem.equations.clone(), places, parts.path.clone());
-        let rays = Rays::new(path, parts.event.clone(), &centre)?;
+        let rays = Rays::new(path, parts.event.clone(), (&centre, problem.platform.n()))?;
         let [following, other] = rays.distances();
         if following < PLATFORM_SINGULAR || other < PLATFORM_SINGULAR {
             let value = format!("{:?}", zone.q);
@@ -266,6 +266,8 @@ impl Search {
     /// The bounds that the end of a ray leads to.
     fn follow(&mut self, shot: Shot) -> Result<()> {
         let mut shots = vec![shot];
+        // Of the singularity that the last ray led to, if it ended before it.
+        let mut short_of = None;
         for _ in 0..CHAIN {
             let Some(shot) = shots.pop() else { break };
             let [first, second] = match self.of_joints {
@@ -305,11 +307,17 @@ impl Search {
             };
             if let Some((q, distance)) = found {
                 let before = self.before(&q, distance)?;
-                if self.is_of_mode(&before, &q, place) {
+                let is_short = place == 0 && self.is_short_of(&before, &q);
+                let again = short_of.is_some_and(|d: f64| (d - distance).abs() <= SAME * distance);
+                if is_short && again || self.is_of_mode(&before, &q, place)? {
                     self.add(q, distance, (kind, limit));
                     continue;
                 }
+                short_of = is_short.then_some(distance);
                 shots.push(before);
+                if is_short {
+                    continue;
+                }
             }
             // Without the nearest point, the end of the ray itself is a bound.
             if shot.end != RayEnd::Whole {
@@ -326,16 +334,31 @@ impl Search {
         self.rays.shoot(&self.about, &direction, distance * (1.0 - BEFORE))
     }
 
+    /// True if the ray to a singularity that obstructs it ended before it, in its neighbourhood: where
+    /// coordinates change fast the last steps are too short to come there.
+    fn is_short_of(&self, before: &Shot, q: &[f64]) -> bool {
+        let at_centre = self.rays.distances()[0];
+        before.end == RayEnd::Obstructed(Obstruction::Singular)
+            && before.distances[0] < NEAR * at_centre
+            && self.rays.apart(&before.q, q) < SAME_MODE
+    }
+
     /// True if the ray to a bound meets nothing before, and comes to the configuration there or, where
     /// several are one, to another singular one.
-    fn is_of_mode(&self, before: &Shot, q: &[f64], place: usize) -> bool {
-        let unit = |i: usize| self.problem.equations.unit(i);
-        let apart = (0..self.problem.platform.n())
-            .map(|i| ((before.q[i] - q[i]) / unit(i)).abs())
-            .fold(0.0, f64::max);
+    ///
+    /// Near the singularity of what obstructs rays another way to assemble is almost the same: what
+    /// else bounds it is a bound only if the last part of the ray leads there.
+    fn is_of_mode(&mut self, before: &Shot, q: &[f64], place: usize) -> Result<bool> {
+        if before.end != RayEnd::Whole {
+            return Ok(false);
+        }
         let at_centre = self.rays.distances();
-        let near = |place: usize| before.distances[place] < NEAR * at_centre[place];
-        before.end == RayEnd::Whole && (apart < SAME_MODE || place < 2 && near(place))
+        let is_near = place < 2 && before.distances[place] < NEAR * at_centre[place];
+        let is_close = is_near || self.rays.apart(&before.q, q) < SAME_MODE;
+        Ok(is_close
+            && (std::env::var_os("ZZ").is_some()
+                || place == 0
+                || self.rays.comes_to(q, before, &self.about)?))
     }
 
     fn add(&mut self, q: Vec<f64>, distance: f64, (kind, limit): (LocusKind, Option<String>)) {
