@@ -143,6 +143,10 @@ fn options_without_an_effect_are_refused() {
         (joints, &["--delay", "0.5"], "--delay has no effect on --joint-to"),
         (joints, &["--time-constant", "0.5"], "--time-constant has no effect on --joint-to"),
         (joints, &["--noise", "0.01"], "--noise has no effect on --joint-to"),
+        (joints, &["--gain", "3"], "--gain has no effect on --joint-to"),
+        (joints, &["--secondary", "none"], "--secondary has no effect on --joint-to"),
+        (joints, &["--inverse", "damped"], "--inverse has no effect on --joint-to"),
+        (joints, &["--tolerance-position", "1e-3"], "--tolerance-position has no effect on"),
     ] {
         let error = refused(&[&command[..], option].concat());
         assert!(error.contains(expected), "'{expected}' not in: {error}");

@@ -1,6 +1,6 @@
 //! The bounds that a motion keeps to: of the arguments, or defaults.
 
-use cylindroid::control::{CartesianBounds, JointDefaults, KinematicBounds};
+use cylindroid::control::{CartesianBounds, JointDefaults, KinematicBounds, SpeedLimit};
 use cylindroid::{Error, Result};
 
 use crate::args::{LawName, MoveArgs, PathArgs};
@@ -41,6 +41,7 @@ pub(super) fn check_jerks(path: &PathArgs) -> Result<()> {
 /// Limits of joints that have none of their own in the model.
 pub(super) fn joint_defaults(args: &MoveArgs) -> JointDefaults {
     let path = &args.path;
+    let most = args.servo.jerk.unwrap_or(f64::INFINITY);
     let (jerk_linear, jerk_angular) = jerks(path);
     let finite = args.servo.acceleration.filter(|a| a.is_finite());
     let acceleration = |on_path: f64| finite.unwrap_or(on_path);
@@ -48,16 +49,22 @@ pub(super) fn joint_defaults(args: &MoveArgs) -> JointDefaults {
         angle: KinematicBounds {
             velocity: PATH_SPEED.1,
             acceleration: acceleration(path.acceleration_angular.unwrap_or(PATH_ACCELERATION.1)),
-            jerk: jerk_angular,
+            jerk: jerk_angular.min(most),
         },
         length: KinematicBounds {
             velocity: PATH_SPEED.0,
             acceleration: acceleration(path.acceleration_linear.unwrap_or(PATH_ACCELERATION.0)),
-            jerk: jerk_linear,
+            jerk: jerk_linear.min(most),
         },
     }
 }
 
+/// The largest speeds of the tool on a path, also where it falls behind and catches up.
+pub(super) fn speed_of(bounds: &CartesianBounds) -> SpeedLimit {
+    SpeedLimit { linear: bounds.linear.velocity, angular: bounds.angular.velocity }
+}
+
+/// Bounds of the target on a path.
 pub(super) fn path_bounds(args: &MoveArgs) -> CartesianBounds {
     let (path, speed) = (&args.path, args.servo.speed);
     let (jerk_linear, jerk_angular) = jerks(path);

@@ -29,6 +29,21 @@ pub(super) fn refuse(args: &MoveArgs, is_timed: bool) -> anyhow::Result<()> {
              --limits"
         );
     }
+    let of_servos = [
+        ("--gain", servo.gain.is_some()),
+        ("--tolerance-position", servo.tolerance_position.is_some()),
+        ("--tolerance-orientation", servo.tolerance_orientation.is_some()),
+        ("--secondary", !servo.secondary.is_empty()),
+        ("--inverse", args.inverse.named.is_given()),
+        ("--fallback", args.inverse.fallback.is_some()),
+    ];
+    let given = of_servos.into_iter().find(|(_, is_given)| *is_given);
+    if let Some((option, _)) = given.filter(|_| is_joint_move) {
+        anyhow::bail!(
+            "{option} has no effect on --joint-to, which moves joints straight: omit it, or move to \
+             a pose (--to, --rpy)"
+        );
+    }
     let plant = servo.plant();
     let behind = [
         ("--delay", plant.delay),

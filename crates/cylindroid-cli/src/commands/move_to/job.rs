@@ -8,7 +8,7 @@ use cylindroid::model::{Dimension, Mechanism};
 use cylindroid::{Error, Pose, Result, ServoOptions, Vec3, tolerance};
 
 use super::super::target::{target_pose, task};
-use super::bounds::{check_jerks, joint_defaults, path_bounds};
+use super::bounds::{check_jerks, joint_defaults, path_bounds, speed_of};
 use super::twist_goal::TwistGoal;
 use super::waypoints::Waypoints;
 use super::{idle, inverse};
@@ -92,11 +92,11 @@ impl Job {
             let motion = Box::new(JointMove::within_limits(&robot, &start, &q, &defaults)?);
             (pose(&q)?, Goal::Joints(motion), "all joints, straight".to_owned())
         } else if let Some(waypoints) = waypoints {
-            options.speed = ServoOptions::new(&robot).speed;
             let mut bounds = path_bounds(args);
             if waypoints.have_speeds() && args.servo.speed.is_none() {
                 bounds.linear.velocity = f64::INFINITY;
             }
+            options.speed = speed_of(&bounds);
             let motion = waypoints.motion(from, bounds, &args.path)?;
             let to = motion.at(f64::INFINITY).0;
             (to, Goal::Waypoints(Box::new(motion)), controlled)
@@ -114,9 +114,9 @@ impl Job {
             let goal = match path {
                 None => Goal::Pose(to),
                 Some(path) => {
-                    // The law bounds the speed; the servo must not bound it a second time.
-                    options.speed = ServoOptions::new(&robot).speed;
-                    Goal::Along(Box::new(CartesianMove::new(path, path_bounds(args))?))
+                    let bounds = path_bounds(args);
+                    options.speed = speed_of(&bounds);
+                    Goal::Along(Box::new(CartesianMove::new(path, bounds)?))
                 }
             };
             (to, goal, controlled)

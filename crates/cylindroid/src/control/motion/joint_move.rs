@@ -213,7 +213,7 @@ impl JointMove {
             bounds.push(KinematicBounds {
                 velocity: own(coordinate.limits.velocity, default.velocity),
                 acceleration: own(coordinate.limits.acceleration, default.acceleration),
-                jerk: own(coordinate.limits.jerk, default.jerk),
+                jerk: own(coordinate.limits.jerk, default.jerk).min(default.jerk),
             });
         }
         Self::named(path, &bounds, |i| format!("joint '{}'", mechanism.coordinates()[i].name))

@@ -19,7 +19,7 @@
 
 use super::stopping::stopping_velocity;
 use crate::model::Limits;
-use crate::scalar::clamp;
+use crate::scalar::{clamp, largest};
 
 /// Velocity and acceleration of a joint, and the limits within which it stops.
 #[derive(Debug, Clone, Copy)]
@@ -228,6 +228,24 @@ impl JerkLimitedStop {
         }
     }
 }
+
+/// The largest velocity of the next step, up to `most`, from which what moves now with a velocity and
+/// an acceleration stops within `room`: of a distance, whose limits are those that joints give it.
+pub(in crate::control) fn largest_approach(
+    limits: &Limits,
+    (velocity, room): (f64, f64),
+    most: f64,
+    dt: f64,
+) -> f64 {
+    let fits = |next: f64| {
+        let stop = JerkLimitedStop::new(limits, next, (next - velocity) / dt, dt);
+        dt * next + stop.range().highest <= room
+    };
+    if fits(most) { most } else { largest(0.0, most, HALVINGS, fits) }
+}
+
+/// Halvings of the interval in which the largest approach lies.
+const HALVINGS: usize = 24;
 
 /// Steps of a phase at most.
 const MOST_STEPS: f64 = 1e9;

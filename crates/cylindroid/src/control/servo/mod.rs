@@ -36,7 +36,7 @@ mod twist_step;
 
 pub(super) use approach::share_of_gain;
 pub(super) use edge::curvature_into;
-pub(super) use jerk_limited_stop::JerkLimitedStop;
+pub(super) use jerk_limited_stop::{JerkLimitedStop, largest_approach};
 pub(super) use limits::{DefaultLimits, acceleration_of, limits_of_servo};
 pub(super) use loop_motions::{LoopMotions, nothing_actuated};
 pub(super) use plant::{Predictor, SimulatedRobot};

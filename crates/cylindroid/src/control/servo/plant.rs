@@ -7,7 +7,9 @@
 //!          with positive weights. Limits of positions, velocities and accelerations that z obeys
 //!          are obeyed by q
 //! Noise    z is estimated: a share dt / (dt + `FILTER_TIME`) of what the measurement says beyond the
-//!          last estimate moved by u dt, while that is within twice the noise; otherwise all of it
+//!          last estimate moved by u dt, while that is within twice the noise; otherwise all of it.
+//!          So z jumps by that share, and joints that brake before a position limit may exceed their
+//!          acceleration and jerk limits, while they keep those of position and velocity
 //! Units    s, rad or m
 //! Valid    drives of first order with a gain of one; others as far as they resemble them. No
 //!          allocation in steps

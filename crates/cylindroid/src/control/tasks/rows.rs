@@ -9,8 +9,11 @@
 use super::motions::JerkBounds;
 use super::options::{MOST_PAIRS, MotionTask};
 use super::task_servo::TaskServo;
-use crate::control::servo::{JointState, jerk_limited_stopping_velocity, share_of_gain};
+use crate::control::servo::{
+    JointState, jerk_limited_stopping_velocity, largest_approach, share_of_gain,
+};
 use crate::error::Result;
+use crate::linalg::dot;
 use crate::model::{Coordinate, Limits};
 
 /// Share of the acceleration limits that brakes a pair of bodies [-]; the rest follows the other
@@ -88,6 +91,7 @@ impl TaskServo {
                 *moving = self.jacobian.column(j).iter().any(|x| *x != 0.0);
             }
             self.load_distance(i, room);
+            self.load_approach(i, room);
         }
         let first = self.options.half_spaces.len();
         let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
@@ -135,6 +139,26 @@ impl TaskServo {
             let own = if room < -ROUNDING * reach { 0.0 } else { room };
             ((second_order - own) / dt).min(acceleration * dt).min(jerk * dt * dt)
         };
+    }
+
+    /// With limits of the jerk, the bound of a row that is loaded takes the velocity and acceleration of
+    /// the distance into account: joints that speed up go on doing so for a while.
+    fn load_approach(&mut self, place: usize, room: f64) {
+        let (motions, entries) = (&self.motions, &self.entries);
+        let most = |of: fn(&Limits) -> f64| {
+            BRAKING * motions.largest_change(|j| entries[j], &self.limits, of)
+        };
+        let (acceleration, jerk) = (most(|l| l.acceleration), most(|l| l.jerk));
+        if !(jerk < f64::INFINITY && jerk > 0.0) {
+            return;
+        }
+        let limits = Limits { acceleration, jerk, ..Limits::NONE };
+        let rate = -dot(entries, &self.last);
+        let room = 0.5 * (room - self.second_order());
+        let bound = &mut self.set.inequalities.lower[self.limits.len() + place];
+        if *bound < 0.0 {
+            *bound = -largest_approach(&limits, (rate, room), -*bound, self.options.dt);
+        }
     }
 
     /// Bound of the second-order change of a distance in a step with the last velocities (m): its

@@ -307,7 +307,7 @@ impl Search {
             };
             if let Some((q, distance)) = found {
                 let before = self.before(&q, distance)?;
-                let is_short = place == 0 && self.is_short_of(&before, &q);
+                let is_short = self.is_short_of(&before, &q, place);
                 let again = short_of.is_some_and(|d: f64| (d - distance).abs() <= SAME * distance);
                 if is_short && again || self.is_of_mode(&before, &q, place)? {
                     self.add(q, distance, (kind, limit));
@@ -334,13 +334,15 @@ impl Search {
         self.rays.shoot(&self.about, &direction, distance * (1.0 - BEFORE))
     }
 
-    /// True if the ray to a singularity that obstructs it ended before it, in its neighbourhood: where
-    /// coordinates change fast the last steps are too short to come there.
-    fn is_short_of(&self, before: &Shot, q: &[f64]) -> bool {
-        let at_centre = self.rays.distances()[0];
-        before.end == RayEnd::Obstructed(Obstruction::Singular)
-            && before.distances[0] < NEAR * at_centre
-            && self.rays.apart(&before.q, q) < SAME_MODE
+    /// True if the ray to a singularity ended in its neighbourhood, before the last part: where
+    /// coordinates change fast, or the centre is nearly singular itself.
+    fn is_short_of(&self, before: &Shot, q: &[f64], place: usize) -> bool {
+        let at_singularity = match before.end {
+            RayEnd::Obstructed(Obstruction::Singular) => place == 0,
+            RayEnd::Event => place == 1,
+            _ => false,
+        };
+        at_singularity && self.rays.apart(&before.q, q) < SAME_MODE
     }
 
     /// True if the ray to a bound meets nothing before, and comes to the configuration there or, where

@@ -49,6 +49,27 @@ fn escapes_keep_the_speed_of_the_tool() {
     }
 }
 
+/// With limits of the jerk joints go on speeding up for a while, and brake late.
+#[test]
+fn limits_of_the_jerk_keep_the_speed_of_the_tool() {
+    for (name, place, jerk, speed) in [
+        ("ur5e", Vec3::new(0.4, 0.2, 0.5), 20.0, 0.05),
+        ("panda", Vec3::new(0.45, 0.15, 0.35), 10.0, 0.1),
+        ("panda", Vec3::new(0.45, 0.15, 0.35), 3.6, 0.1),
+        ("puma560", Vec3::new(-0.5, -0.2, 0.4), 50.0, 0.2),
+        ("iiwa14", Vec3::new(0.4, 0.2, 0.5), 30.0, 0.05),
+    ] {
+        let robot = catalogue::load(name).unwrap();
+        let mut servo = servo(&robot, |o| {
+            o.task = Task::POSITION;
+            o.jerk = jerk;
+            o.speed.linear = speed;
+        });
+        let (result, most) = fastest(&robot, &mut servo, place);
+        println!("{name} {jerk}: {most:?}, {} after {} s", result.reached, result.time);
+    }
+}
+
 /// Turns that a position leaves free keep the angular speed too.
 #[test]
 fn free_turns_keep_the_angular_speed() {

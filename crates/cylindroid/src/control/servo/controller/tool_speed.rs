@@ -5,7 +5,9 @@
 //!          and are w v further, w = u dt + (u - u^2 / 2) T, at the share u of that time. The tool then has
 //!          the twist (1 - u) (J v + w v . dJ/dq v), at most the largest speeds at each of `SHARES`. If not,
 //!          v is divided by the excess of J v; if that is not enough, or exceeds the bounds of the joints,
-//!          v lies between the braked velocities of the last step and these, as near to these as it may
+//!          v lies between the braked velocities of the last step and these, as near to these as it may.
+//!          A joint with the acceleration a of its velocity and a jerk limit J comes to v + a |a| / 2 J
+//!          first, after |a| / J
 //! Shapes   J: 6 x n of the tool, dJ/dq: n of 6 x n       Units    m/s, rad/s
 //! Valid    trees; finite speeds only: otherwise no velocity is changed
 //! Why so   near a stretched arm the tool hardly moves, however fast the joints are, and then moves faster
@@ -83,21 +85,39 @@ impl Servo {
     /// velocities (scaled), at these shares of the time of braking.
     fn speed_excess(&self, rates: &[f64], shares: &[f64]) -> f64 {
         let most = self.options.speed;
-        let joints = || rates.iter().zip(&self.space.columns).map(|(rate, column)| rate * column);
-        let time = joints()
-            .zip(&self.limits)
-            .fold(0.0, |most: f64, (rate, limits)| most.max(stopping_time(rate.abs(), limits)));
-        let twist = twist_of(self.space.whole(), joints());
         let is_now = shares.iter().all(|share| *share == 0.0);
+        // Velocities that joints come to, and the time until they rest.
+        let all = || rates.iter().zip(&self.last).zip(&self.space.columns).zip(&self.limits);
+        let stops = || {
+            all().map(|(((rate, last), column), limits)| {
+                let (velocity, acceleration) =
+                    (rate * column, (rate - last) * column / self.options.dt);
+                if is_now || limits.jerk == f64::INFINITY || acceleration * velocity <= 0.0 {
+                    return (velocity, stopping_time(velocity.abs(), limits));
+                }
+                let ramp = acceleration.abs() / limits.jerk;
+                let peak = velocity + 0.5 * acceleration * ramp;
+                (peak, ramp + stopping_time(peak.abs(), limits))
+            })
+        };
+        let joints = || stops().map(|(velocity, _)| velocity);
+        let time = stops().fold(0.0, |most: f64, (_, time)| most.max(time));
+        let twist = twist_of(self.space.whole(), joints());
         let mut change = Twist::ZERO;
         if !is_now {
             for (rate, derivative) in joints().zip(&self.hessian) {
                 change = change + twist_of(derivative, joints()) * rate;
             }
         }
+        let has_jerks = self.limits.iter().any(|l| l.jerk < f64::INFINITY);
         let excess = |share: f64| {
-            let way = share * self.options.dt + share * (1.0 - 0.5 * share) * time;
-            let then = (twist + change * way) * (1.0 - share);
+            let (left, way) = if has_jerks && share < 0.5 {
+                // Ramps take half of the time.
+                (1.0 - 2.0 * share * share, share * (1.0 - share * share / 1.5))
+            } else {
+                (1.0 - share, share * (1.0 - 0.5 * share))
+            };
+            let then = (twist + change * (share * self.options.dt + way * time)) * left;
             (then.linear.norm() / most.linear).max(then.angular.norm() / most.angular)
         };
         shares.iter().fold(0.0, |most, share| most.max(excess(*share)))
