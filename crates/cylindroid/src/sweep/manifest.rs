@@ -19,6 +19,9 @@ use crate::error::{Error, Result};
 /// The file in the folder.
 pub(super) const MANIFEST: &str = "manifest.json";
 
+/// Its name while it is written.
+pub(super) const TEMPORARY: &str = ".manifest.json.tmp";
+
 /// A finished part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
@@ -39,6 +42,11 @@ impl Part {
 /// The name of a part.
 pub(super) fn part_name(part: usize) -> String {
     format!("part-{part:06}.parquet")
+}
+
+/// The number of the part whose file has this name.
+pub(super) fn part_number(name: &str) -> Option<usize> {
+    name.strip_prefix("part-")?.strip_suffix(".parquet")?.parse().ok()
 }
 
 /// The manifest of a folder, if there is one.
@@ -64,10 +72,8 @@ pub(super) fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Value> {
 pub(super) fn parts(manifest: &Value, count: usize) -> Vec<Option<Part>> {
     let mut parts = vec![None; count];
     for entry in manifest["parts"].as_array().into_iter().flatten() {
-        let number = entry["file"]
-            .as_str()
-            .and_then(|name| name.strip_prefix("part-")?.strip_suffix(".parquet")?.parse().ok());
-        let own = number.and_then(|number: usize| parts.get_mut(number));
+        let number = entry["file"].as_str().and_then(part_number);
+        let own = number.and_then(|number| parts.get_mut(number));
         if let (Some(own), Some(bytes), Some(checksum)) =
             (own, entry["bytes"].as_u64(), entry["xxh128"].as_str())
         {
@@ -108,7 +114,7 @@ pub(super) fn text(
 /// Writes the manifest.
 pub(super) fn write(folder: &Path, text: &str) -> Result<()> {
     let path = folder.join(MANIFEST);
-    let temporary = folder.join(".manifest.json.tmp");
+    let temporary = folder.join(TEMPORARY);
     let written = File::create(&temporary).and_then(|mut file| {
         file.write_all(text.as_bytes())?;
         file.sync_all()?;

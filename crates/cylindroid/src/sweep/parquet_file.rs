@@ -26,6 +26,7 @@ use super::manifest::{Part, cannot_write};
 use super::recipe::Recipe;
 use super::table::{Column, ColumnKind, Values};
 use crate::error::{Error, Result};
+use crate::model::open_regular_file;
 
 /// The recipe and the columns of a table.
 pub(super) type Contents<'a> = (&'a Recipe, &'a [Column]);
@@ -67,12 +68,16 @@ fn into_sink<W: Write + Send>(
     Ok((part, sink.inner))
 }
 
-/// The checksum of a file.
-pub(super) fn checksum(path: &Path) -> io::Result<Part> {
-    let (mut file, mut checksum, mut bytes) = (File::open(path)?, Checksum::new(), 0);
+/// The checksum of a regular file.
+pub(super) fn checksum(path: &Path) -> Result<Part> {
+    let (mut file, mut checksum, mut bytes) = (open_regular_file(path)?, Checksum::new(), 0);
     let mut buffer = vec![0; 1 << 18];
     loop {
-        let count = file.read(&mut buffer)?;
+        let count = file.read(&mut buffer).map_err(|error| Error::Io {
+            path: path.to_owned(),
+            action: "read",
+            message: error.to_string(),
+        })?;
         if count == 0 {
             break;
         }

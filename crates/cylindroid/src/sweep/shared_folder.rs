@@ -8,16 +8,18 @@
 //! Checked  tests/sweep/shared_folder.rs, tests/sweep/folder.rs
 
 use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use super::job::Sweep;
-use super::manifest::{self, MANIFEST, Part, cannot_write, part_name};
+use super::manifest::{self, MANIFEST, Part, TEMPORARY, cannot_write, part_name};
 use super::parquet_file;
 use super::table::{Table, Values};
 use crate::error::{Error, Result};
+use crate::model::check_output_file;
 
 /// A folder that is locked until this value is dropped.
 #[derive(Debug)]
@@ -175,11 +177,18 @@ impl Sweep {
         let place = crate::error::shown(folder);
         match manifest::read(folder)? {
             Some(manifest) => self.listed_in(&place, &manifest, resume),
-            None if folder.join(part_name(0)).exists() && !resume => Err(refused(
-                &place,
-                "it has parts of a sweep, but no manifest; name another folder".to_owned(),
-            )),
-            None => Ok(vec![None; self.parts()]),
+            // Readers of all parts would take those that this sweep does not replace for its own.
+            None => match first_part(folder)? {
+                Some(part) => {
+                    let name = part_name(part);
+                    let reason = format!(
+                        "it has parts of a sweep ({name}), but no manifest; remove them, or name \
+                         another folder"
+                    );
+                    Err(refused(&place, reason))
+                }
+                None => Ok(vec![None; self.parts()]),
+            },
         }
     }
 
@@ -198,6 +207,22 @@ impl Sweep {
     }
 }
 
+/// The smallest number of a part whose file is in the folder.
+fn first_part(folder: &Path) -> Result<Option<usize>> {
+    let cannot = |error: io::Error| Error::Io {
+        path: folder.to_owned(),
+        action: "read",
+        message: error.to_string(),
+    };
+    let mut first: Option<usize> = None;
+    for entry in fs::read_dir(folder).map_err(cannot)? {
+        let name = entry.map_err(cannot)?.file_name();
+        let number = name.to_str().and_then(manifest::part_number);
+        first = first.into_iter().chain(number).min();
+    }
+    Ok(first)
+}
+
 /// The error about a place that does not take the sweep.
 fn refused(place: &str, reason: String) -> Error {
     Error::InvalidOption { option: "out", value: place.to_owned(), reason }
@@ -208,12 +233,12 @@ fn temporary_name(part: usize) -> String {
     format!(".{}.{}.tmp", part_name(part), std::process::id())
 }
 
-/// Removes parts that an ended process left unfinished.
+/// Removes parts and a manifest that an ended process left unfinished.
 fn remove_temporary(folder: &Path) {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let is_ours = |path: &PathBuf| {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        name.starts_with(".part-") && name.ends_with(".tmp")
+        name == TEMPORARY || name.starts_with(".part-") && name.ends_with(".tmp")
     };
     for path in entries.map(|entry| entry.path()).filter(is_ours) {
         let _ = fs::remove_file(path);
@@ -223,6 +248,11 @@ fn remove_temporary(folder: &Path) {
 /// One process at a time; the operating system opens the lock of a process that ends.
 fn lock(folder: &Path) -> Result<File> {
     let path = folder.join(".lock");
+    // Opening a pipe waits for its reader.
+    if check_output_file(&path).is_err() {
+        let reason = "its .lock is no regular file; remove it, or name another folder";
+        return Err(refused(&crate::error::shown(folder), reason.to_owned()));
+    }
     let file = OpenOptions::new().create(true).append(true).open(&path);
     let file = file.map_err(|error| cannot_write(&path, &error))?;
     match file.try_lock() {

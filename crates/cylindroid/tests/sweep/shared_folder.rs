@@ -76,6 +76,57 @@ fn a_folder_is_opened_once_and_with_one_recipe() {
     assert!(SharedFolder::open(&sweep(0), &own, true).is_ok());
 }
 
+/// Which of its parts are stale is not known, of the first or another, resumed or not.
+#[test]
+fn parts_without_a_manifest_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path();
+    let write = |resume| {
+        let options = WriteOptions { threads: None, resume };
+        sweep(0).write(own, &options, |_| true)
+    };
+    fs::write(own.join("part-of-mine.parquet"), "mine").unwrap();
+    write(false).unwrap();
+    fs::remove_file(own.join("manifest.json")).unwrap();
+    for first in [0, 3] {
+        for part in 0..first {
+            let _ = fs::remove_file(own.join(Sweep::part_name(part)));
+        }
+        for resume in [false, true] {
+            let error = write(resume).unwrap_err().to_string();
+            let says = format!("parts of a sweep ({}), but no manifest", Sweep::part_name(first));
+            assert!(error.contains(&says) && error.contains("remove them"), "{error}");
+        }
+    }
+    assert!(!own.join("manifest.json").exists());
+    (3..13).for_each(|part| fs::remove_file(own.join(Sweep::part_name(part))).unwrap());
+    assert!(write(true).unwrap().complete);
+}
+
+/// Pipes wait for their other end: parts and a manifest that is being written are replaced, a lock is
+/// refused.
+#[cfg(unix)]
+#[test]
+fn pipes_are_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    let pipe = |name: &str| {
+        let path = own.join(name);
+        let _ = fs::remove_file(&path);
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+    };
+    let resume = WriteOptions { threads: None, resume: true };
+    sweep(0).write(&own, &WriteOptions::default(), |_| true).unwrap();
+    pipe(&Sweep::part_name(4));
+    pipe(".manifest.json.tmp");
+    let summary = sweep(0).write(&own, &resume, |_| true).unwrap();
+    assert!(summary.complete && summary.computed == 77);
+    assert!(fs::metadata(own.join(Sweep::part_name(4))).unwrap().is_file());
+    pipe(".lock");
+    let error = sweep(0).write(&own, &resume, |_| true).unwrap_err().to_string();
+    assert!(error.contains("its .lock is no regular file; remove it"), "{error}");
+}
+
 #[test]
 fn other_manifests_are_refused() {
     let own = sweep(0);
