@@ -42,6 +42,7 @@ mod optimise;
 mod options;
 mod own_columns;
 mod parquet_file;
+mod parquet_form;
 mod parquet_input;
 mod parts;
 mod payload;

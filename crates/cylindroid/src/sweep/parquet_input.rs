@@ -1,10 +1,11 @@
 //! Columns of a Parquet file by their names: configurations, poses, quantities.
 //!
-//! Valid    columns of numbers without gaps, uncompressed or by Snappy; other columns are ignored.
+//! Valid    columns of numbers without gaps, uncompressed or by Snappy; other columns are ignored. Dates,
+//!          times, decimals in bytes and numbers of 16 bits are refused, as is a column of a name given twice.
 //!          Headers that announce lists of 2^31 truth values, which have no bytes, take seconds for
 //!          each: parquet skips entries one by one (apache/arrow-rs#9874)
 //! Why so   column by column into rows: Parquet's own rows take ten times as long
-//! Checked  tests/sweep/folder.rs::a_part_is_a_file_of_configurations
+//! Checked  tests/sweep/folder.rs::a_part_is_a_file_of_configurations, tests/sweep/parquet_forms.rs
 
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read};
@@ -19,6 +20,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
 
+use super::parquet_form::Form;
 use crate::error::Error;
 use crate::model::open_regular_file;
 
@@ -121,7 +123,8 @@ pub fn coordinate_column(columns: &[String], name: &str) -> Option<usize> {
 /// The columns of these names, a row after the other.
 ///
 /// # Errors
-/// A file that cannot be read, a missing column, an entry that is no number, too many rows.
+/// A file that cannot be read, a missing column or one of a name given twice, one of dates or times, an
+/// entry that is no number, too many rows.
 pub fn parquet_columns(path: &Path, names: &[&str]) -> Result<Vec<f64>> {
     read_columns(path, names, |columns, name| columns.iter().position(|c| c == name))
 }
@@ -143,7 +146,14 @@ fn read_columns(
     for name in names {
         let place = find(&columns, name)
             .ok_or_else(|| refuse(format!("no column '{name}' among {}", columns.join(", "))))?;
-        places.push(place);
+        let column = &columns[place];
+        if columns.iter().filter(|other| *other == column).count() > 1 {
+            return Err(refuse(format!("column '{column}' is given twice")));
+        }
+        let form = Form::of(&metadata.schema_descr().column(place)).map_err(|what| {
+            refuse(format!("column '{column}' holds {what}; write its numbers as float64"))
+        })?;
+        places.push((place, form));
     }
     let (n, mut q, mut first) = (names.len(), Vec::new(), 0_usize);
     // What the file says about its rows may be wrong: only those that are read count.
@@ -155,12 +165,12 @@ fn read_columns(
             return Err(refuse(format!("{end} rows are more than fit; split the file")));
         }
         let mut columns = Vec::with_capacity(n);
-        for (&place, name) in places.iter().zip(names) {
+        for (&(place, form), name) in places.iter().zip(names) {
             check_place(group.metadata().column(place)).map_err(refuse)?;
             let pages = group.get_column_page_reader(place).map_err(because)?;
             let pages = Box::new(Ordered { pages, has_dictionary: false });
             let of = get_column_reader(metadata.schema_descr().column(place), pages);
-            match read(of, rows).map_err(because)? {
+            match read(of, form, rows).map_err(because)? {
                 Ok(column) => columns.push(column),
                 Err(row) => {
                     let row = first + row + 1;
@@ -188,12 +198,12 @@ fn check_place(chunk: &ColumnChunkMetaData) -> Result<(), String> {
 /// The numbers of a column, or the first row that has none.
 type Numbers = std::result::Result<Vec<f64>, usize>;
 
-fn read(column: ColumnReader, rows: usize) -> Result<Numbers, ParquetError> {
+fn read(column: ColumnReader, form: Form, rows: usize) -> Result<Numbers, ParquetError> {
     match column {
         ColumnReader::DoubleColumnReader(column) => numbers(column, rows, |x| x),
         ColumnReader::FloatColumnReader(column) => numbers(column, rows, f64::from),
-        ColumnReader::Int32ColumnReader(column) => numbers(column, rows, f64::from),
-        ColumnReader::Int64ColumnReader(column) => numbers(column, rows, |x| x as f64),
+        ColumnReader::Int32ColumnReader(column) => numbers(column, rows, |x| form.of_short(x)),
+        ColumnReader::Int64ColumnReader(column) => numbers(column, rows, |x| form.of_long(x)),
         _ => Ok(if rows == 0 { Ok(Vec::new()) } else { Err(0) }),
     }
 }

@@ -16,6 +16,7 @@ mod folder;
 mod invariance;
 mod optimise;
 mod own_columns;
+mod parquet_forms;
 mod parts;
 mod payload;
 mod pinocchio;
