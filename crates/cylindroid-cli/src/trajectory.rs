@@ -162,9 +162,9 @@ pub(crate) fn save(
     let written = output_file::create(path).and_then(|file| {
         let mut file = BufWriter::new(file);
         write(&mut file)?;
-        file.flush()
+        file.into_inner()?.finish()
     });
-    written.map_err(|error| cannot_write(path, &error))
+    written.map(drop).map_err(|error| cannot_write(path, &error))
 }
 
 /// The error of a file that cannot be written.

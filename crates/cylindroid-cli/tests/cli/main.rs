@@ -18,6 +18,7 @@ mod measured;
 mod motion;
 mod optimise;
 mod other_programs;
+mod output_files;
 mod parameters;
 mod pictures;
 mod scales;

@@ -264,7 +264,7 @@ fn interrupted_processes_are_resumed() {
 
 /// With a limit on the size of files, which is an error of writing as a full disk is.
 #[cfg(unix)]
-fn limited(blocks: u32, arguments: &[&str]) -> std::process::Output {
+pub(crate) fn limited(blocks: u32, arguments: &[&str]) -> std::process::Output {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
     Command::new("sh")
         .args(["-c", &script, env!("CARGO_BIN_EXE_cylindroid")])

@@ -75,5 +75,6 @@ pub(super) fn write(robot: &Mechanism, map: &Map, report: &MapJson<'_>, path: &P
     for row in rows {
         writer.write_record(row.iter().map(ToString::to_string)).map_err(failed)?;
     }
-    writer.flush().map_err(|e| cannot(e.to_string()))
+    let file = writer.into_inner().map_err(|e| cannot(e.error().to_string()))?;
+    file.finish().map(drop).map_err(|e| cannot(e.to_string()))
 }

@@ -8,13 +8,30 @@ use cylindroid::sweep::{Progress, Sweep, Table, Values};
 use cylindroid::{Error, Result};
 
 use crate::output_file;
+use crate::trajectory::cannot_write;
 
 /// Rows of a CSV file at most.
 const MOST: u64 = 1_000_000;
 /// Rows computed at once.
 const BLOCK: u64 = 4096;
 
-/// Writes all rows, which may be there as a table, under a temporary name, renames, and returns the
+/// Returns an error for a file that cannot be written, and for more than such a file takes.
+pub(super) fn check(sweep: &Sweep, path: &Path) -> Result<()> {
+    check_output_file(path).map_err(|e| cannot_write(path, &e))?;
+    let (rows, columns) = (sweep.rows(), sweep.columns().len());
+    let what = match sweep.check_memory() {
+        _ if rows > MOST => format!("{rows} rows are too many for CSV ({MOST})"),
+        Err(_) => format!("{rows} rows of {columns} numbers are too many for CSV"),
+        Ok(()) => return Ok(()),
+    };
+    Err(Error::InvalidOption {
+        option: "--out",
+        value: path.display().to_string(),
+        reason: format!("{what}; name a folder for Parquet"),
+    })
+}
+
+/// Writes all rows of a sweep that [`check`] takes, which may be there as a table, and returns the
 /// size (bytes); `None` if `observe` stopped it.
 pub(super) fn write(
     sweep: &Sweep,
@@ -22,42 +39,9 @@ pub(super) fn write(
     path: &Path,
     observe: impl Fn(&Progress) -> bool,
 ) -> Result<Option<u64>> {
-    let rows = sweep.rows();
-    if rows > MOST {
-        return Err(Error::InvalidOption {
-            option: "--out",
-            value: path.display().to_string(),
-            reason: format!("{rows} rows are too many for CSV ({MOST}); name a folder for Parquet"),
-        });
-    }
-    let cannot = |message: String| Error::Io { path: path.to_owned(), action: "write", message };
-    check_output_file(path).map_err(|e| cannot(e.to_string()))?;
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".tmp");
-    let temporary = path.with_file_name(name);
-    let finished = lines((sweep, table), &temporary, observe, &cannot);
-    match finished {
-        Ok(true) => {
-            std::fs::rename(&temporary, path).map_err(|e| cannot(e.to_string()))?;
-            let size = std::fs::metadata(path).map_err(|e| cannot(e.to_string()))?.len();
-            Ok(Some(size))
-        }
-        stopped => {
-            let _ = std::fs::remove_file(&temporary);
-            stopped.map(|_| None)
-        }
-    }
-}
-
-fn lines(
-    (sweep, table): (&Sweep, Option<&Table>),
-    path: &Path,
-    observe: impl Fn(&Progress) -> bool,
-    cannot: &dyn Fn(String) -> Error,
-) -> Result<bool> {
-    let failed = |e: csv::Error| cannot(e.to_string());
+    let failed = |e: csv::Error| cannot_write(path, &e);
     let all = sweep.rows();
-    let file = output_file::create(path).map_err(|e| cannot(e.to_string()))?;
+    let file = output_file::create(path).map_err(|e| cannot_write(path, &e))?;
     let mut writer = csv::Writer::from_writer(file);
     writer.write_record(sweep.columns().iter().map(|c| &c.name)).map_err(failed)?;
     let mut start = 0;
@@ -65,7 +49,7 @@ fn lines(
         let progress =
             Progress { unit: "rows", rows: all, at_most: false, done: start, computed: start };
         if !observe(&progress) {
-            return Ok(false);
+            return Ok(None);
         }
         let end = all.min(start + BLOCK);
         let (table, rows) = match table {
@@ -87,6 +71,6 @@ fn lines(
         }
         start = end;
     }
-    writer.flush().map_err(|e| cannot(e.to_string()))?;
-    Ok(true)
+    let file = writer.into_inner().map_err(|e| cannot_write(path, e.error()))?;
+    file.finish().map(Some).map_err(|e| cannot_write(path, &e))
 }

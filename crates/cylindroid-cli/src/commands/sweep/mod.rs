@@ -65,6 +65,17 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
         None => Sweep::new(&robot, options)?,
         Some(space) => Sweep::of_designs(&parametric(&args.model)?, space, options)?,
     };
+    if let Some(path) = args.out.as_deref().filter(|path| is_csv(path)) {
+        if args.resume {
+            return Err(Error::InvalidOption {
+                option: "--resume",
+                value: path.display().to_string(),
+                reason: "a .csv file is written as a whole; name a folder".to_owned(),
+            }
+            .into());
+        }
+        csv_file::check(&sweep, path)?;
+    }
     let picture = match &args.plot {
         None => None,
         Some(path) => {
@@ -104,14 +115,6 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
             None => sweep.statistics(args.threads, observe)?.map(Outcome::Statistics),
         },
         Some(path) if is_csv(path) => {
-            if args.resume {
-                return Err(Error::InvalidOption {
-                    option: "--resume",
-                    value: path.display().to_string(),
-                    reason: "a .csv file is written as a whole; name a folder".to_owned(),
-                }
-                .into());
-            }
             let written = csv_file::write(&sweep, table.as_ref(), path, observe)?;
             written.map(|bytes| Outcome::File { path, bytes })
         }
