@@ -58,7 +58,7 @@ fn decimals_are_scaled() {
     assert_eq!(read::<Int32Type>(older, &[157, -1]).unwrap(), [1.57, -0.01]);
     let long = of(Physical::INT64, 18, 18).with_logical_type(logical(18, 18));
     let found = read::<Int64Type>(long, &[123_456_789_012_345_678, -7]).unwrap();
-    assert_eq!(found, [0.123_456_789_012_345_678, -7e-18]);
+    assert_eq!(found, [0.123_456_789_012_345_68, -7e-18]);
     let whole = of(Physical::INT64, 0, 18).with_logical_type(logical(0, 18));
     assert_eq!(read::<Int64Type>(whole, &[-25]).unwrap(), [-25.0]);
 }
