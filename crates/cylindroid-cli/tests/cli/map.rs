@@ -150,6 +150,13 @@ fn what_is_wrong_is_named() {
     assert!(message.contains("z") && message.contains("rz"), "{message}");
     let message = refused(&["map", "five-bar", "--over", "x=1:0:3"]);
     assert!(message.contains("--over") && message.contains("smaller"), "{message}");
+    for held in [&["--over", "x=0:1:3", "--free", "x"][..], &["--at", "x=0", "--free", "x"]] {
+        let message = refused(&[&["map", "five-bar", "--over", "y=0:1:3"], held].concat());
+        assert!(message.contains("--free = x"), "{message}");
+    }
+    let twice = ["map", "five-bar", "--actuated", "q1,q5,q1", "--over", "x=0:1:3"];
+    let message = refused(&twice);
+    assert!(message.contains("--actuated = q1") && message.contains("twice"), "{message}");
     let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--at", "x=1"]);
     assert!(message.contains("once"), "{message}");
     let message = refused(&["map", "five-bar", "--over", "x=0:1:3", "--plot", "map.svg"]);

@@ -2,6 +2,7 @@
 //!
 //! Formats are loaders, not types: the result of every file is a [`Mechanism`].
 
+mod actuated_joints;
 mod builder;
 #[cfg(feature = "formats")]
 pub mod catalogue;

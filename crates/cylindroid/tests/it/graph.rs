@@ -181,6 +181,10 @@ fn actuation_may_be_chosen_anew() {
     assert!(none.actuated().next().is_none() && !none.loops()[0].actuated);
     let error = m.with_actuated(&["q6"]).unwrap_err().to_string();
     assert!(error.contains("no joint named 'q6'; nearest: q"), "{error}");
+    for twice in [["q1", "q1"], ["q5", "q5"]] {
+        let error = m.with_actuated(&twice).unwrap_err().to_string();
+        assert!(error.contains(twice[0]) && error.contains("named twice"), "{error}");
+    }
 
     let mut b = Mechanism::builder("mimic");
     b.joint(JointSpec::new("lead", JointKind::Universal { second: Vec3::X }, "base", "a"));

@@ -172,7 +172,7 @@ fn sorted(names: &[&'static str], options: &MapOptions) -> Result<[Vec<Component
         axes.push((once(&axis.name, "over")?, None));
     }
     for (name, value) in &options.held {
-        let k = once(name, "at")?;
+        let k = once(name, if value.is_some() { "at" } else { "free" })?;
         if let Some(value) = value {
             Error::check_within(name, &[*value], crate::tolerance::MAX_MAGNITUDE)?;
             held.push((k, Some(*value)));
