@@ -22,6 +22,14 @@ const NAMES: [(&str, &str, &str); 14] = [
     ("components", "--task", ""),
 ];
 
+/// Flags of each kind of name whose word may be in others, as that of a parameter beside an index.
+const KINDS: [(&str, &[&str]); 4] = [
+    ("index", &["--minimise", "--maximise"]),
+    ("statistic", &["--minimise", "--maximise"]),
+    ("parameter", &["--parameter", "--vary", "--over"]),
+    ("component of the platform", &["--components", "--over", "--at", "--free"]),
+];
+
 /// Names an error of the library after the flags of this command line.
 pub(crate) fn named(error: anyhow::Error, words: &[String]) -> anyhow::Error {
     let flags = typed(words);
@@ -53,15 +61,34 @@ pub(crate) fn named(error: anyhow::Error, words: &[String]) -> anyhow::Error {
             let (expected, got, hint) = (*expected, *got, hint.clone());
             Error::Dimension { what: flag, expected, got, hint }.into()
         }
-        Some(unknown @ Error::UnknownName { name, .. }) => {
-            let is_name = |text: &str| text.trim() == name;
-            let mut values = flags.iter().filter(|(_, value)| {
-                value.is_some_and(|v| is_name(v) || v.split([',', '=']).any(is_name))
-            });
-            let Some((flag, _)) = values.next() else { return error };
-            anyhow!("{flag}: {unknown}")
+        Some(unknown @ Error::UnknownName { what, name, .. }) => {
+            match flag_with(what, name, &flags) {
+                Some(flag) => anyhow!("{flag}: {unknown}"),
+                None => error,
+            }
         }
         _ => error,
+    }
+}
+
+/// The flag whose value has this name: one that takes names of its kind, otherwise the only one.
+fn flag_with<'a>(kind: &str, name: &str, flags: &[(&'a str, Option<&str>)]) -> Option<&'a str> {
+    let is_name = |text: &str| text.trim() == name;
+    let has_name = |value: &str| is_name(value) || value.split([',', '=', ':']).any(is_name);
+    let mut found: Vec<&str> = flags
+        .iter()
+        .filter(|(_, value)| value.is_some_and(has_name))
+        .map(|(flag, _)| *flag)
+        .collect();
+    let own = KINDS.iter().find(|(k, _)| *k == kind).map_or(&[][..], |(_, own)| own);
+    if found.iter().any(|flag| own.contains(flag)) {
+        found.retain(|flag| own.contains(flag));
+    }
+    found.sort_unstable();
+    found.dedup();
+    match found[..] {
+        [flag] => Some(flag),
+        _ => None,
     }
 }
 
@@ -119,5 +146,12 @@ mod tests {
         let words = ["manipulability", "five-bar", "--task", ".., x"];
         assert!(named_after(&words, unknown()).starts_with("--task: no component named '..'"));
         assert!(named_after(&["info", ".."], unknown()).starts_with("no component"));
+        let words = ["statics", "two-arm", "--compliance", "..=1", "--q", "..=1"];
+        assert!(named_after(&words, unknown()).starts_with("no component"));
+        let words = ["map", "panda", "--at", "..=1", "--at", "..=2"];
+        assert!(named_after(&words, unknown()).starts_with("--at: no component"));
+        let index = Error::unknown("index", "a", ["x", "y"]);
+        let words = ["optimise", "f", "--vary", "a=0:1", "--minimise", "a"];
+        assert!(named_after(&words, index).starts_with("--minimise: no index named 'a'"));
     }
 }

@@ -43,6 +43,23 @@ pub(crate) fn parametric(model: &ModelArgs) -> cylindroid::Result<ParametricMode
     ParametricModel::read(&model.name, &values)
 }
 
+/// Refuses a value of --parameter for one that varies, which would be ignored.
+pub(crate) fn check_varied(
+    model: &ModelArgs,
+    varied: impl IntoIterator<Item: AsRef<str>>,
+) -> cylindroid::Result<()> {
+    let is_given = |name: &str| model.parameter.iter().any(|given| given.pair().0 == name);
+    match varied.into_iter().find(|name| is_given(name.as_ref())) {
+        None => Ok(()),
+        Some(name) => Err(Error::InvalidOption {
+            option: "--parameter",
+            value: name.as_ref().to_owned(),
+            reason: "a parameter has a value or varies; leave it out here, or in --vary and --over"
+                .to_owned(),
+        }),
+    }
+}
+
 /// The model with the limits of a file, if one is named.
 pub(crate) fn limited(robot: Mechanism, args: &LimitsArgs) -> cylindroid::Result<Mechanism> {
     match &args.limits {

@@ -85,6 +85,8 @@ fn options_of_maps() {
     assert!(message.contains("reach"), "{message}");
     let message = refused(&[&MAP[..], &["--quantities", "pose"]].concat());
     assert!(message.contains("best value of yoshikawa"), "{message}");
+    let message = refused(&[&MAP[..6], &["--directions", "0", "--rolls", "4"]].concat());
+    assert!(message.contains("--rolls are rotations about --directions"), "{message}");
     let message = refused(&["sweep", "ur5e", "--samples", "3", "--rolls", "3"]);
     assert!(message.contains("--reach"), "{message}");
 }

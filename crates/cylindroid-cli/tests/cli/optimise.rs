@@ -66,6 +66,8 @@ fn wrong_objectives_are_refused() {
     assert!(refused(&["--minimise", "anisotropy"]).contains("--vary"));
     let message = refused(&with(&["--minimise", "anisotropi"]));
     assert!(message.contains("no index named 'anisotropi'"), "{message}");
+    let message = refused(&with(&["--minimise", "crank"]));
+    assert!(message.contains("--minimise: no index named 'crank'"), "{message}");
     let message = refused(&with(&["--maximise", "volume:most"]));
     assert!(message.contains("no statistic named 'most'"), "{message}");
     let message = refused(&with(&["--minimise", "volume", "--over", "crank=0.3:0.4:2"]));

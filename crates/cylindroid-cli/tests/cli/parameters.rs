@@ -38,6 +38,20 @@ fn every_command_with_a_model_takes_them() {
     }
 }
 
+/// A value that no design would have.
+#[test]
+fn a_parameter_varies_or_has_a_value() {
+    for varied in [
+        &["optimise", FIVE_BAR, "--vary", "crank=0.3:0.8", "--minimise", "anisotropy"][..],
+        &["sweep", FIVE_BAR, "--over", "crank=0.4:0.7:3"],
+        &["sweep", FIVE_BAR, "--vary", "crank=0.4:0.7", "--designs", "3"],
+    ] {
+        let message =
+            refused(&[varied, &["--parameter", "rod=0.7", "--parameter", "crank=0.5"]].concat());
+        assert!(message.contains("--parameter = crank") && message.contains("--vary"), "{message}");
+    }
+}
+
 #[test]
 fn wrong_values_are_refused() {
     let with = |value: &str| refused(&["mobility", FIVE_BAR, "--parameter", value]);

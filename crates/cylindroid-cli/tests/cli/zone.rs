@@ -40,6 +40,10 @@ fn one_component_has_two_rays() {
 fn zones_that_do_not_exist() {
     let message = refused(&["zone", "five-bar", "--components", "x,w"]);
     assert!(message.contains("'w'") && message.contains("--components"), "{message}");
+    // The joint that closes the loop has no coordinate.
+    let of_drives = ["zone", "five-bar", "--actuated", "q1,q5", "--components", "q1,q5"];
+    let message = refused(&of_drives);
+    assert!(message.contains("--components") && !message.contains("--actuated"), "{message}");
     let message =
         refused(&["zone", "five-bar", "--components", "x", "--free", "y", "--free", "rz"]);
     assert!(message.contains("motions of the mechanism free"), "{message}");

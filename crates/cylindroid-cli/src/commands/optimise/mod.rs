@@ -13,7 +13,7 @@ use crate::args::OptimiseArgs;
 use crate::commands::configurations::Chosen;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::progress::{Bar, interrupted};
-use crate::commands::shared::{Style, end_effector, load, parametric};
+use crate::commands::shared::{Style, check_varied, end_effector, load, parametric};
 use crate::exit::Exit;
 use crate::output;
 
@@ -23,6 +23,9 @@ pub(crate) fn run(args: &OptimiseArgs, style: Style, out: &mut dyn Write) -> any
     let chosen = Chosen::from(args);
     let source = chosen.source(&robot)?;
     let workspace = chosen.parameters(&robot)?;
+    let varied = args.vary.iter().map(|range| &range.0.name);
+    let varied = varied.chain(workspace.iter().map(|axis| &axis.name));
+    check_varied(&args.model, varied)?;
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
     let base = args.relative_to.as_deref();

@@ -22,7 +22,7 @@ use crate::commands::configurations::Chosen;
 use crate::commands::distance::collision_model;
 use crate::commands::interrupt::Interrupt;
 use crate::commands::progress::{Bar, interrupted};
-use crate::commands::shared::{Style, end_effector, load, parametric};
+use crate::commands::shared::{Style, check_varied, end_effector, load, parametric};
 use crate::exit::Exit;
 use crate::output;
 use crate::plot;
@@ -33,6 +33,9 @@ pub(crate) fn run(args: &SweepArgs, style: Style, out: &mut dyn Write) -> anyhow
     let chosen = Chosen::from(args);
     let source = chosen.source(&robot)?;
     let parameters = chosen.parameters(&robot)?;
+    let varied = args.vary.iter().map(|range| &range.0.name);
+    let varied = varied.chain(parameters.iter().map(|axis| &axis.name));
+    check_varied(&args.model, varied)?;
     let space = designs(parameters.clone(), args)?;
     let named = args.frame.frame.is_some() || args.frame.tool.is_some();
     let frame = if named { Some(end_effector(&robot, &args.frame)?) } else { None };
@@ -142,13 +145,19 @@ fn is_csv(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
-/// Refuses options of capability maps without one; clap does not where another source excludes maps.
+/// Refuses options of capability maps without one, and rolls without directions; clap does not where
+/// another source excludes maps.
 fn check_options_of_maps(args: &SweepArgs) -> anyhow::Result<()> {
     let given = [
         ("--directions", args.directions.is_some()),
         ("--rolls", args.rolls.is_some()),
         ("--reach-from", args.reach_from.is_some()),
     ];
+    if args.rolls.is_some() && args.directions.is_some_and(|count| count.0 == 0) {
+        anyhow::bail!(
+            "--rolls are rotations about --directions, of which there are none: omit one"
+        );
+    }
     match given.iter().find(|(_, is_given)| *is_given && args.reach.is_empty()) {
         Some((name, _)) => {
             anyhow::bail!("{name} is an option of capability maps, which --reach asks for")
