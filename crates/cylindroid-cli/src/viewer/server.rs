@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::extract::ws::{Message as Frame, WebSocketUpgrade};
-use axum::extract::{DefaultBodyLimit, Path, State};
+use axum::extract::{DefaultBodyLimit, FromRequest, Path, Request, State};
 use axum::http::{StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
@@ -15,8 +15,11 @@ use axum::{Router, middleware};
 use cylindroid::model::read_regular_file;
 use serde::Serialize;
 use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Semaphore;
+use tokio::time::timeout;
 
 use super::assets::{Folders, Page, page_is_built};
+use super::connections::{self, Limits};
 use super::json::text;
 use super::messages::Complaint;
 use super::opened::{self, Known, Offer, Opened};
@@ -35,6 +38,8 @@ const LONGEST: usize = 1024 * 1024;
 const LARGEST_MESH: u64 = 256 << 20;
 /// Maximum size of a request that opens a model, with the line before its files [bytes].
 const LARGEST_REQUEST: usize = opened::LARGEST + (1 << 20);
+/// Maximum number of requests that open a model at the same time; others wait, not yet read.
+const UPLOADS: usize = 2;
 
 const NOT_BUILT: &str = "The page is not built: run `cargo xtask viewer` in the source of \
                          cylindroid, then build it again. The protocol (docs/viewer.md) is served \
@@ -58,6 +63,8 @@ struct Shared {
     /// The folder of all paths: empty, or a slash and the token.
     folder: Arc<str>,
     silence: Silence,
+    limits: Limits,
+    uploads: Arc<Semaphore>,
 }
 
 /// Where a server listens, and for whom.
@@ -71,6 +78,7 @@ pub(super) struct Place<'a> {
     /// The pages that may show this one in a frame, as in a content security policy.
     pub(super) frame_ancestors: Option<String>,
     pub(super) silence: Silence,
+    pub(super) limits: Limits,
 }
 
 impl Server {
@@ -88,15 +96,16 @@ impl Server {
     pub(super) async fn of(
         start: Arc<Start>,
         of_program: Option<Arc<SharedSession>>,
-        Place { host, port, token, frame_ancestors, silence }: Place<'_>,
+        Place { host, port, token, frame_ancestors, silence, limits }: Place<'_>,
     ) -> io::Result<Self> {
         let listener = TcpListener::bind((host.trim_matches(['[', ']']), port)).await?;
         let address: SocketAddr = listener.local_addr()?;
         let folder = if token.is_empty() { String::new() } else { format!("/{token}") };
         let (names, sessions) = (Names::new(host, address), Sessions::new(start, of_program));
         let opens = names.is_local() && !sessions.are_of_program();
-        let shared =
-            Shared { sessions, opened: Arc::default(), opens, folder: folder.into(), silence };
+        let (opened, uploads) = (Arc::default(), Arc::new(Semaphore::new(UPLOADS)));
+        let folder = folder.into();
+        let shared = Shared { sessions, opened, opens, folder, silence, limits, uploads };
         Ok(Self { listener, names, shared, frame_ancestors })
     }
 
@@ -144,7 +153,7 @@ impl Server {
             .with_state(self.shared.clone());
         let guarded = Guard { names: self.names, frame_ancestors: self.frame_ancestors };
         let router = router.layer(middleware::from_fn_with_state(guarded, guard));
-        axum::serve(without_delay(self.listener), router).await
+        connections::serve(without_delay(self.listener), router, self.shared.limits).await
     }
 }
 
@@ -211,13 +220,31 @@ async fn models(State(shared): State<Shared>) -> Response {
     }
 }
 
-async fn open(State(shared): State<Shared>, body: Bytes) -> Response {
+async fn open(State(shared): State<Shared>, request: Request) -> Response {
     if !shared.opens {
         let what = "This server opens no files and no other models: other machines reach it, or a \
                     program holds its session.";
         return (StatusCode::FORBIDDEN, what).into_response();
     }
-    let opened = move || shared.opened.open(&shared.sessions, &body);
+    let limit = shared.limits.upload;
+    let uploads = Arc::clone(&shared.uploads);
+    let Ok(Ok(place)) = timeout(limit, uploads.acquire_owned()).await else {
+        let what = "Too many models are being opened; try it again once they are.";
+        return (StatusCode::SERVICE_UNAVAILABLE, what).into_response();
+    };
+    let body = match timeout(limit, Bytes::from_request(request, &())).await {
+        Ok(Ok(body)) => body,
+        Ok(Err(refused)) => return refused.into_response(),
+        Err(_) => {
+            let seconds = limit.as_secs_f64();
+            let what = format!("The files did not arrive within {seconds} s; send fewer.");
+            return (StatusCode::REQUEST_TIMEOUT, what).into_response();
+        }
+    };
+    let opened = move || {
+        let _place = place;
+        shared.opened.open(&shared.sessions, &body)
+    };
     let opened = tokio::task::spawn_blocking(opened).await;
     let failed = |_| Err(Refusal::new("the model could not be loaded", "try another file"));
     match opened.unwrap_or_else(failed) {
@@ -306,13 +333,14 @@ async fn page(State(shared): State<Shared>, uri: Uri) -> Response {
 
 #[cfg(test)]
 mod tests {
-    use std::io::{ErrorKind, Read};
+    use std::io::{ErrorKind, Read, Write};
     use std::net::TcpStream;
     use std::thread;
     use std::time::{Duration, Instant};
 
     use axum::serve::Listener;
     use cylindroid::catalogue;
+    use tokio::runtime::Runtime;
     use tungstenite::{Message, WebSocket, client};
 
     use super::*;
@@ -338,18 +366,81 @@ mod tests {
         });
     }
 
-    /// One client reads, and by that answers pings; the other is gone, but its connection is not.
-    #[test]
-    fn half_open_connections_end() {
+    /// A server of a panda with its URL, which serves as long as the runtime lives.
+    fn served(silence: Silence, limits: Limits) -> (String, Runtime) {
         let robot = catalogue::load("panda").unwrap();
         let (q, tool) = (robot.home().to_vec(), robot.tool().into());
         let start = Start::new((robot, "panda"), &q, tool, &[], StartBodies::default()).unwrap();
-        let silence = Silence { ping: Duration::from_millis(50), most: MOST };
-        let place = Place { host: "127.0.0.1", silence, ..Place::default() };
+        let place = Place { host: "127.0.0.1", silence, limits, ..Place::default() };
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build().unwrap();
         let server = runtime.block_on(Server::of(Arc::new(start), None, place)).unwrap();
         let url = server.url();
         runtime.spawn(server.serve_on());
+        (url, runtime)
+    }
+
+    /// A connection on which this was written.
+    fn written(url: &str, text: &str) -> TcpStream {
+        let mut stream = TcpStream::connect(url.split('/').nth(2).unwrap()).unwrap();
+        stream.set_read_timeout(Some(WAIT)).unwrap();
+        stream.write_all(text.as_bytes()).unwrap();
+        stream
+    }
+
+    /// All that comes until the connection ends.
+    fn rest(mut stream: TcpStream) -> String {
+        let mut text = Vec::new();
+        let ended = stream.read_to_end(&mut text);
+        assert!(ended.map_or_else(|e| e.kind() == ErrorKind::ConnectionReset, |_| true));
+        String::from_utf8(text).unwrap()
+    }
+
+    /// They neither stay nor keep others out; a client is no such connection.
+    #[test]
+    fn silent_connections_end() {
+        let limits =
+            Limits { connections: 2, header: Duration::from_millis(200), ..Limits::default() };
+        let (url, _runtime) = served(Silence::default(), limits);
+        let mut clients = [(); 3].map(|()| connect(&url));
+        let silent = ["", "GET / HTTP/1.1\r\n", "", "POST /models", ""];
+        let silent = silent.map(|text| written(&url, text));
+        let host = url.split('/').nth(2).unwrap();
+        let asked = written(
+            &url,
+            &format!("GET /models HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n"),
+        );
+        assert!(rest(asked).starts_with("HTTP/1.1 200"));
+        for stream in silent {
+            assert!(!rest(stream).contains("200"));
+        }
+        clients.iter_mut().for_each(|client| assert!(client.read().is_ok()));
+    }
+
+    /// Files that do not come, those that wait for their turn meanwhile, and what comes after them.
+    #[test]
+    fn slow_uploads_end() {
+        let limits = Limits { upload: Duration::from_millis(300), ..Limits::default() };
+        let (url, _runtime) = served(Silence::default(), limits);
+        let host = url.split('/').nth(2).unwrap();
+        let head = format!("POST /models HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n");
+        let slow: Vec<TcpStream> = (0..=UPLOADS)
+            .map(|_| written(&url, &format!("{head}Content-Length: 100\r\n\r\n{{")))
+            .collect();
+        for stream in slow {
+            let answer = rest(stream);
+            let status = answer.split(' ').nth(1);
+            assert!(matches!(status, Some("408" | "503")), "{answer}");
+        }
+        let model = r#"{"open": "3r"}"#;
+        let good = written(&url, &format!("{head}Content-Length: {}\r\n\r\n{model}", model.len()));
+        assert!(rest(good).starts_with("HTTP/1.1 200"));
+    }
+
+    /// One client reads, and by that answers pings; the other is gone, but its connection is not.
+    #[test]
+    fn half_open_connections_end() {
+        let silence = Silence { ping: Duration::from_millis(50), most: MOST };
+        let (url, _runtime) = served(silence, Limits::default());
         // The silence of a client counts from its connection, which comes after this.
         let begin = Instant::now();
         let (mut gone, mut there) = (connect(&url), connect(&url));

@@ -16,6 +16,7 @@ use tokio::sync::{Semaphore, mpsc, watch};
 use tokio::task::{JoinSet, spawn_blocking, yield_now};
 use tokio::time::{sleep_until, timeout};
 
+use super::answers::{Answer, Answers, Gone, queue};
 use super::dispatcher::Reply;
 use super::json::text;
 use super::mailbox::Mailbox;
@@ -23,8 +24,6 @@ use super::messages::{Complaint, LARGEST, read};
 use super::sessions::{Asked, Sessions};
 use super::shared_session::Membership;
 
-/// Maximum number of unread answers; the next message waits until one is read.
-const ANSWERS: usize = 64;
 /// Maximum number of states in transit to a client that sends `seen`.
 const UNSEEN: usize = 2;
 /// Maximum number of reports of a client in progress.
@@ -53,7 +52,7 @@ impl Default for Silence {
 pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked, silence: Silence) {
     let (sink, stream) = socket.split();
     let mailbox = Arc::new(Mailbox::default());
-    let (answers, waiting) = mpsc::channel(ANSWERS);
+    let (answers, waiting) = queue();
     let places = sessions.reports();
     let (seen, drawn) = watch::channel(None);
     let mut writer =
@@ -73,7 +72,7 @@ pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked, si
             let answers = answers;
             let complaint = text(&Complaint::of("session", &error));
             // The queue is still empty.
-            let _ = answers.try_send(Frame::Text(complaint.into()));
+            answers.end(Frame::Text(complaint.into()));
         }
     }
     // The senders are dropped: the writer sends the queued frames and ends.
@@ -84,7 +83,7 @@ pub(super) async fn talk(socket: WebSocket, sessions: Sessions, asked: Asked, si
 
 struct Client {
     membership: Membership,
-    answers: mpsc::Sender<Frame>,
+    answers: Answers,
     seen: watch::Sender<Option<u64>>,
     /// Of the reports of all clients that are computed at the same time.
     places: Arc<Semaphore>,
@@ -116,7 +115,7 @@ impl Client {
                 () = sleep_until(silent) => return,
                 Some(report) = self.reports.join_next(), if !self.reports.is_empty() => {
                     let answered = match report.ok().flatten() {
-                        Some(report) => self.answer(report).await,
+                        Some(report) => self.answers.send(report).await,
                         None => Ok(()),
                     };
                     silent = tokio::time::Instant::now() + silence;
@@ -152,10 +151,10 @@ impl Client {
         };
         match said.and_then(|request| self.membership.obey(request)) {
             Ok(Reply::Nothing | Reply::Scene | Reply::Drive(_)) => Ok(()),
-            Ok(Reply::Text(text)) => self.answer(text).await,
+            Ok(Reply::Text(text)) => self.answers.send(text).await,
             Ok(Reply::States(mut asked)) => loop {
                 if let Some(text) = self.membership.compute(&mut asked, SHARE) {
-                    break self.answer(text).await;
+                    break self.answers.send(text).await;
                 }
                 yield_now().await;
             },
@@ -179,15 +178,10 @@ impl Client {
                 let what = format!("{REPORTS} reports are in progress");
                 let complaint = Complaint::new("report", "report", &what, "wait for one of them");
                 let reply_to = report.reply_to().cloned();
-                self.answer(text(&Complaint { reply_to, ..complaint })).await
+                self.answers.send(text(&Complaint { reply_to, ..complaint })).await
             }
-            Err(complaint) => self.answer(text(&complaint)).await,
+            Err(complaint) => self.answers.send(text(&complaint)).await,
         }
-    }
-
-    /// Waits while too many answers are unread.
-    async fn answer(&self, text: String) -> Result<(), Gone> {
-        self.answers.send(Frame::Text(text.into())).await.map_err(|_| Gone)
     }
 
     /// Closes with a reason if the client violated the protocol (message too long).
@@ -199,21 +193,16 @@ impl Client {
             close_code::PROTOCOL
         };
         let reason = "not a message of docs/viewer.md".into();
-        // A full queue means that nobody reads.
-        let _ = self.answers.try_send(Frame::Close(Some(CloseFrame { code, reason })));
+        self.answers.end(Frame::Close(Some(CloseFrame { code, reason })));
     }
 }
-
-/// The client is disconnected.
-#[derive(Debug)]
-struct Gone;
 
 /// Sends answers in order and the newest of everything else at the client's pace, until the client
 /// is gone.
 async fn write(
     mut sink: SplitSink<WebSocket, Frame>,
     mailbox: Arc<Mailbox>,
-    mut answers: mpsc::Receiver<Frame>,
+    mut answers: mpsc::Receiver<Answer>,
     (mut seen, interval): (watch::Receiver<Option<u64>>, Duration),
 ) {
     let mut unseen: VecDeque<u64> = VecDeque::new();
@@ -225,25 +214,25 @@ async fn write(
         }
         // Clients that never send `seen` get every state.
         let is_ready = drawn.is_none() || unseen.len() < UNSEEN;
-        let frame = if ping <= tokio::time::Instant::now() {
+        let answer: Answer = if ping <= tokio::time::Instant::now() {
             ping = tokio::time::Instant::now() + interval;
-            Frame::Ping(Bytes::new())
+            Frame::Ping(Bytes::new()).into()
         } else if let Some(text) = mailbox.first() {
-            Frame::Text(text)
+            Frame::Text(text).into()
         } else if let Ok(answer) = answers.try_recv() {
             answer
         } else if let Some(text) = mailbox.second() {
-            Frame::Text(text)
+            Frame::Text(text).into()
         } else if let Some(state) = is_ready.then(|| mailbox.state()).flatten() {
             unseen.push_back(state.seq);
             if unseen.len() > UNSEEN {
                 unseen.pop_front();
             }
-            Frame::Text(state.text)
+            Frame::Text(state.text).into()
         } else {
             tokio::select! {
                 answer = answers.recv() => match answer {
-                    Some(frame) => frame,
+                    Some(answer) => answer,
                     None => return,
                 },
                 Ok(()) = seen.changed(), if !is_ready => continue,
@@ -251,8 +240,10 @@ async fn write(
                 () = mailbox.arrived() => continue,
             }
         };
+        // Its place is free once it is sent.
+        let Answer { frame, place } = answer;
         match timeout(PATIENCE, sink.send(frame)).await {
-            Ok(Ok(())) => {}
+            Ok(Ok(())) => drop(place),
             _ => return,
         }
     }

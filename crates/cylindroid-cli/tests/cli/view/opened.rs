@@ -199,5 +199,9 @@ fn few_models_are_open_and_only_of_this_machine() {
     let public = Server::new(&["panda", "--host", "0.0.0.0"]);
     let (status, why) = post(&public, &json!({"open": "3r"}), &[]);
     assert_eq!(status, 403, "{why}");
+    // Before the files come, which never do.
+    let host = public.address();
+    let head = format!("POST /models HTTP/1.1\r\nHost: {host}\r\nContent-Length: 269484032");
+    assert_eq!(public.ask(&head).0, 403);
     assert!(public.get("/models").1.contains("\"opens\":false"));
 }
