@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 
 use super::beside::Beside;
 use super::obstacle_messages::{AddObstacle, AvoidCollisions, Distances, MoveObstacle};
+use super::repeated::repeated;
 
 /// Maximum message size [bytes].
 pub(super) const LARGEST: usize = 64 * 1024;
@@ -297,6 +298,10 @@ pub(super) fn read(text: &str) -> Result<Request, Complaint> {
         let (what, way_out) = ("the id must be a string or a number", "give one, or omit the id");
         return Err(Complaint::new("message.id", &short(&id.to_string()), what, way_out));
     }
+    if let Some(key) = repeated(text) {
+        let (what, way_out) = (format!("'{}' is given twice", short(&key)), "give each field once");
+        return Err(marked(Complaint::new("message", &short(&key), &what, way_out)));
+    }
     let kind = match object.remove("type") {
         Some(Value::String(kind)) if TYPES.contains(&kind.as_str()) => kind,
         Some(Value::String(kind)) => {
@@ -385,6 +390,8 @@ mod tests {
         assert!(short.message.contains("length 2"), "{}", short.message);
         let more = refused(r#"{"type": "pause", "now": true, "id": "a"}"#);
         assert!(more.message.contains("now") && more.reply_to == Some("a".into()), "{more:?}");
+        let twice = refused(r#"{"type": "play", "id": 3, "type": "pause"}"#);
+        assert_eq!((&*twice.culprit, &twice.reply_to), ("type", &Some(3.into())));
         let unknown = refused(r#"{"type": "jont"}"#);
         assert!(unknown.message.contains("joint"), "{}", unknown.message);
         for text in ["", "[]", "7", "{\"type\": 3}", "{}", "{\"type\": \"joint\", \"value\": NaN}"]

@@ -1,7 +1,7 @@
 //! The server of the web viewer: docs/viewer.md is its contract.
 //!
 //! Clients join sessions, each alone or several by name. From the leaves up: `json`, `beside`,
-//! `obstacle_messages`, `messages`, `names`, `inverse_parameters`, `assets`, `reaching` and
+//! `obstacle_messages`, `repeated`, `messages`, `names`, `inverse_parameters`, `assets`, `reaching` and
 //! `avoidance` do not depend on a session; `start` is the initial state of sessions, `bodies` their
 //! obstacles and distances; `session` is a configuration with target and servo; `client_view` what
 //! one client wants to see of it; `measures`, `overlays`, `posture`, `elsewhere`, `compare`, `reports`,
@@ -40,6 +40,7 @@ mod overlays;
 mod posture;
 mod reaching;
 mod refusal;
+mod repeated;
 mod reports;
 mod safety;
 mod scene;

@@ -24,6 +24,9 @@ use super::start::{Start, StartBodies};
 pub(super) const LARGEST: usize = 256 << 20;
 /// Maximum number of files of a model.
 const MOST_FILES: usize = 2000;
+/// Longest path of a file and of each part of it [bytes], less than systems permit with the folder.
+const LONGEST_PATH: usize = 900;
+const LONGEST_PART: usize = 255;
 /// Maximum number of models that are open at a time; those without sessions make room.
 const MOST_MODELS: usize = 16;
 /// Extensions of model files. A xacro file would be a program.
@@ -221,6 +224,13 @@ fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
         if name.is_empty() || name.contains(['\\', '\0']) || !path.components().all(is_plain) {
             return Err(refuse(format!("'{name}' is not a path below the folder of a model")));
         }
+        let part = path.components().map(|c| c.as_os_str().len()).max().unwrap_or(0);
+        if name.len() > LONGEST_PATH || part > LONGEST_PART {
+            let what =
+                format!("the path '{name:.40}...' has {} bytes, {part} in a part", name.len());
+            let help = format!("at most {LONGEST_PATH} are possible, and {LONGEST_PART} in a part");
+            return Err(Refusal::new(what, &help));
+        }
         // Paths are compared by their parts: a//b is a/b.
         if !paths.insert(path) {
             return Err(refuse(format!("'{name}' is twice among the files")));
@@ -230,6 +240,12 @@ fn read(body: &[u8]) -> Result<(Head, Files<'_>), Box<Refusal>> {
         };
         files.push((path.to_owned(), bytes));
         rest = more;
+    }
+    for (path, _) in &files {
+        if let Some(file) = path.ancestors().skip(1).find(|folder| paths.contains(folder)) {
+            let (path, file) = (path.display(), file.display());
+            return Err(refuse(format!("'{path}' is below '{file}', which is a file too")));
+        }
     }
     if !rest.is_empty() {
         return Err(refuse(format!("{} bytes belong to no file", rest.len())));

@@ -166,6 +166,18 @@ fn what_is_wrong_with_a_model_is_told_with_its_place() {
         let told = refused(head, &[b"x", b"y"]);
         assert!(told["message"].as_str().unwrap().contains("twice"), "{other}: {told}");
     }
+    for other in ["a.urdf/b.urdf", "a.urdf//b/c.urdf"] {
+        let head = json!({"open": "a.urdf", "files": [[other, 1], ["a.urdf", 1]]});
+        let told = refused(head, &[b"x", b"y"]);
+        assert!(told["message"].as_str().unwrap().contains("'a.urdf', which is a file"), "{told}");
+    }
+    for (name, count) in [("x".repeat(5000), "5000"), (format!("a/{}", "x".repeat(256)), "256")] {
+        let told =
+            refused(json!({"open": "a.urdf", "files": [["a.urdf", 1], [name, 1]]}), &[b"xy"]);
+        let message = told["message"].as_str().unwrap();
+        assert!(message.contains(count) && message.len() < 120, "{told}");
+        assert!(told["help"].as_str().unwrap().contains("at most 900"), "{told}");
+    }
     let short = refused(json!({"open": "a.urdf", "files": [["a.urdf", 9]]}), &[b"x"]);
     assert!(short["message"].as_str().unwrap().contains("fewer bytes"), "{short}");
     let long = refused(json!({"open": "a.urdf", "files": [["a.urdf", 0]]}), &[b"x"]);

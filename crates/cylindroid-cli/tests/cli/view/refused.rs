@@ -39,6 +39,7 @@ fn a_malformed_message_is_answered_and_the_session_goes_on() {
         "{\"type\": \"compare\", \"methods\": [\"damped\"], \"point\": [0, 0, 0]}",
         "{\"type\": \"seen\", \"seq\": -1}",
         "{\"type\": \"play\", \"id\": [1]}",
+        "{\"type\": \"play\", \"type\": \"pause\"}",
     ] {
         client.text(message);
         let complaint = client.next("error");
