@@ -8,10 +8,10 @@
 //! `snapshot` and `scene` describe a session; `dispatcher` executes messages; `shared_session` moves a session in
 //! real time and gives its clients the newest of everything in a `mailbox`, `sessions` finds it, `opened` those of further
 //! models, `refusal` says why one is not shown; `watch` loads a model again whose files change;
-//! `answers` queue for a client to which `socket` talks; `safety` and `connections` protect `server`,
-//! which listens; `embedded` is all of it
-//! inside another program, with its `drawings` and `drags`; `fed` is a client of tests. `typescript`
-//! writes the messages as types of the page. All mathematics is in the library.
+//! `answers` queue for a client, to which `socket` talks; `safety` and `connections` protect `server`,
+//! which listens; `embedded` is all of it inside another program, with its `drawings` and `drags`;
+//! `fed` is a client of tests. `typescript` writes the messages as types of the page. All mathematics
+//! is in the library.
 
 mod answers;
 mod assets;
