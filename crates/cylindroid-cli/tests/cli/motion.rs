@@ -194,6 +194,17 @@ fn a_robot_that_lags_arrives_later() {
     }
 }
 
+/// A closed chain that lags stops before a type II singularity with that reason, not with an error
+/// about a `q` that nobody gave.
+#[test]
+fn loops_that_lag_stall() {
+    let command = ["move", "five-bar", "--to", "0.5,2.2,0", "--dt", "0.002"];
+    for lag in ["--time-constant", "--delay"] {
+        let report = json(&[&command[..], &[lag, "0.05"]].concat(), 1);
+        assert!(report["explanation"].as_str().unwrap().contains("type II"), "{lag}: {report}");
+    }
+}
+
 #[test]
 fn a_stall_at_limits_goes_round_or_offers_another_posture() {
     let command = ["move", "puma560", "--to", "-0.5,0.2,0.3"];

@@ -130,9 +130,18 @@ impl Coupled {
         self.loops.fit(fit)
     }
 
-    /// Closes the loops of a measured configuration, see [`LoopMotions::close_measured`].
+    /// Closes the loops of a measured configuration, see [`LoopMotions::close_measured`] and
+    /// [`LoopMotions::close_tracked`].
     pub(super) fn close_measured(&mut self, q: &[f64]) -> Result<()> {
-        self.loops.close_measured(q)
+        match self.is_tracked {
+            true => self.loops.close_tracked(q),
+            false => self.loops.close_measured(q),
+        }
+    }
+
+    /// Closes the loops of a predicted configuration, see [`LoopMotions::close_ahead`].
+    pub(super) fn close_ahead(&mut self, q: &mut [f64], from: &[f64]) -> Result<()> {
+        self.loops.close_ahead(q, from)
     }
 
     /// Computes M and J M at the closed configuration, with `self.task` the task there. `space`

@@ -5,8 +5,8 @@
 //!          (`closure/mobility/coordinate_partitioning.rs`, near singularities `actuation_map.rs`)
 //! Shapes   M: (n + e) x a, e the actuated loop joints, columns beyond the independent motions zero
 //! Valid    any mechanism. Allocates near type II singularities only, where the loops are analysed
-//!          in full
-//! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs
+//!          in full, and where passive joints do not move as commanded: loops are assembled there
+//! Checked  tests/it/servo/object.rs, tests/it/servo/measured.rs, tests/it/servo/plant.rs
 
 use super::sensor_fit::SensorFit;
 use super::stopping::stopping_velocity;
@@ -121,10 +121,15 @@ impl LoopMotions {
     /// # Errors
     /// Loops with a closure error above `NEARLY_CLOSED`.
     pub(in crate::control) fn close_measured(&mut self, q: &[f64]) -> Result<()> {
+        self.close_regular(q).map(|_| ())
+    }
+
+    /// [`LoopMotions::close_measured`]; false, and then at `q`, if Newton's method does not close them.
+    fn close_regular(&mut self, q: &[f64]) -> Result<bool> {
         let length = self.mechanism.reach();
         let mut closure_error = self.partitioning.load(q)?;
-        let LoopClosureError { distance, angle } = closure_error;
-        if !(distance <= NEARLY_CLOSED * length && angle <= NEARLY_CLOSED) {
+        if !is_nearly_closed(closure_error, length) {
+            let LoopClosureError { distance, angle } = closure_error;
             return Err(Error::InvalidOption {
                 option: "q",
                 value: format!("loops open by {distance:.3e} m, {angle:.3e} rad"),
@@ -139,6 +144,49 @@ impl LoopMotions {
         if !self.is_regular {
             self.q.copy_from_slice(q);
             self.partitioning.load(q)?;
+        }
+        Ok(self.is_regular && closure_error.is_closed(length))
+    }
+
+    /// [`LoopMotions::close_measured`] for passive joints that are tracked: near type II singularities,
+    /// where they turn fast, and where they did not move as predicted, the loops are assembled.
+    ///
+    /// # Errors
+    /// Loops with a closure error above `NEARLY_CLOSED` that the passive joints cannot close nearby.
+    pub(super) fn close_tracked(&mut self, q: &[f64]) -> Result<()> {
+        let closed = self.close_regular(q);
+        if matches!(closed, Ok(true)) {
+            return Ok(());
+        }
+        let near = |(i, (x, q)): (usize, (&f64, &f64))| {
+            (x - q).abs() <= NEARLY_CLOSED.sqrt() * self.mechanism.unit_of(i)
+        };
+        let is_near = |x: &Vec<f64>| x.iter().zip(q).enumerate().all(near);
+        let found = self.assembled(q, &self.actuated_coordinates()).filter(is_near);
+        let found = match (found, closed) {
+            (None, Err(open)) => return Err(open),
+            // Nearly closed: drives beside a fold yield by the errors of their positions.
+            (None, Ok(_)) => self.assembled(q, &self.locked).filter(is_near),
+            (found, _) => found,
+        };
+        if let Some(found) = found {
+            self.set_closed(&found)?;
+            self.passive_change.fill(0.0);
+            self.actuated_change.fill(0.0);
+        }
+        Ok(())
+    }
+
+    /// Closes the loops of a configuration `q` to which commands lead from a closed one, `from`, where
+    /// they open on the way by more than [`LoopMotions::close_measured`] permits: the passive joints do
+    /// not follow commands, and drives that cannot reach it stop before. It is `from` if that fails.
+    pub(super) fn close_ahead(&mut self, q: &mut [f64], from: &[f64]) -> Result<()> {
+        let length = self.mechanism.reach();
+        if !is_nearly_closed(self.partitioning.load(q)?, length) {
+            self.close(q);
+            if !is_nearly_closed(self.partitioning.load(q)?, length) {
+                q.copy_from_slice(from);
+            }
         }
         Ok(())
     }
@@ -305,16 +353,27 @@ impl LoopMotions {
     /// Assembles the loops of `q` after integration: the actuated joints keep their values if the
     /// loops permit it.
     pub(in crate::control) fn close(&self, q: &mut [f64]) {
-        let coordinates = self.mechanism.coordinates();
-        let q = &mut q[..coordinates.len()];
-        let actuated: Vec<usize> = (0..q.len()).filter(|&i| coordinates[i].actuated).collect();
-        for prescribed in [actuated, self.locked.clone()] {
-            match assemble(&self.mechanism, q, &prescribed) {
-                Ok(found) if found.closed => return q.copy_from_slice(&found.q),
-                _ => {}
-            }
+        let q = &mut q[..self.mechanism.n()];
+        let held = self.assembled(q, &self.actuated_coordinates());
+        if let Some(found) = held.or_else(|| self.assembled(q, &self.locked)) {
+            q.copy_from_slice(&found);
         }
     }
+
+    /// The assembled configuration near `q` in which the prescribed coordinates have its values.
+    fn assembled(&self, q: &[f64], prescribed: &[usize]) -> Option<Vec<f64>> {
+        let found = assemble(&self.mechanism, q, prescribed).ok()?;
+        found.closed.then_some(found.q)
+    }
+
+    fn actuated_coordinates(&self) -> Vec<usize> {
+        self.mechanism.actuated().collect()
+    }
+}
+
+/// True for loops that a servo closes as it moves.
+fn is_nearly_closed(error: LoopClosureError, length: f64) -> bool {
+    error.distance <= NEARLY_CLOSED * length && error.angle <= NEARLY_CLOSED
 }
 
 /// The error for mechanisms in which no joint is actuated.

@@ -6,6 +6,8 @@
 //!          Then z(next) = z + u dt: z moves as an ideal robot does, and q is a mean of earlier z
 //!          with positive weights. Limits of positions, velocities and accelerations that z obeys
 //!          are obeyed by q
+//! Loops    passive joints do not follow their commands: where z opens the loops it is assembled
+//!          (`loop_motions.rs`)
 //! Noise    z is estimated: a share dt / (dt + `FILTER_TIME`) of what the measurement says beyond the
 //!          last estimate moved by u dt, while that is within twice the noise; otherwise all of it.
 //!          So z jumps by that share, and joints that brake before a position limit may exceed their
@@ -188,6 +190,19 @@ impl Predictor {
                 }
             }
         }
+        &self.q
+    }
+
+    /// Closes the loops of the predicted configuration, given with the measured one.
+    pub(in crate::control) fn close(
+        &mut self,
+        close: impl FnOnce(&mut [f64], &[f64]) -> Result<()>,
+    ) -> Result<()> {
+        close(&mut self.q, &self.measured)
+    }
+
+    /// The predicted configuration.
+    pub(in crate::control) fn q(&self) -> &[f64] {
         &self.q
     }
 

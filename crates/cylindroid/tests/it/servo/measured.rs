@@ -106,6 +106,39 @@ fn the_actuated_joints_suffice() {
     }
 }
 
+/// Where each joint brakes by itself, the passive ones move otherwise than commanded: they are tracked
+/// all the same, beside limits of drives and up to a type II singularity.
+#[test]
+fn braking_drives_are_tracked() {
+    for (name, acceleration, jerk, offset) in [
+        ("delta", 6.26, 102.9, Vec3::new(-0.0955, 0.1845, -0.3163)),
+        ("3rrr", 1.5, f64::INFINITY, Vec3::new(-0.03, 0.91, 0.0)),
+    ] {
+        let mechanism = catalogue::load(name).unwrap();
+        let mut options = ServoOptions::new(&mechanism);
+        (options.dt, options.acceleration, options.jerk) = (0.01, Some(acceleration), jerk);
+        let mut full = Servo::new(&mechanism, options).unwrap();
+        let mut own = full.clone();
+        let mut q = mechanism.home().to_vec();
+        let mut target = pose(&mechanism, &q);
+        target.translation += offset;
+        let mut has_stalled = false;
+        for i in 0..400 {
+            let measured: Vec<f64> = mechanism.actuated().map(|i| q[i]).collect();
+            let step = full.step(&q, target).unwrap();
+            let tracked = own.step_actuated(&measured, target);
+            let tracked = tracked.unwrap_or_else(|error| panic!("{name}, step {i}: {error}"));
+            assert_eq!(tracked.status, step.status, "{name}, step {i}");
+            for (a, b) in own.configuration().iter().zip(&q) {
+                assert!((a - b).abs() < 1e-6, "{name}, step {i}: {a} {b}");
+            }
+            has_stalled |= step.status == Status::Stalled;
+            full.advance(&mut q);
+        }
+        assert!(has_stalled, "{name}");
+    }
+}
+
 /// Positions of actuated joints that no closed configuration has are an error that says so, and the
 /// servo goes on with the next ones.
 #[test]

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use cylindroid::catalogue;
 use cylindroid::control::{
-    MotionTask, Plant, Status, Task, TaskObjective, TaskServo, TaskServoOptions, TwistStatus,
-    simulate,
+    MotionTask, Plant, Stall, Status, Task, TaskObjective, TaskServo, TaskServoOptions,
+    TwistStatus, simulate,
 };
 use cylindroid::kinematics::EndEffector;
 use cylindroid::model::{Inclusion, Mechanism};
@@ -332,6 +332,32 @@ fn legs_keep_their_limits() {
         }
     }
     assert!(unknown > 3e-3, "{unknown}");
+}
+
+/// Closed chains that lag stop before a type II singularity as those that do not: the loops of the
+/// configuration to which their commands lead are closed.
+#[test]
+fn loops_stop_before_singularities_behind_drives() {
+    let mechanism = catalogue::load("five-bar").unwrap();
+    let home = mechanism.home();
+    let mut target = mechanism.state(home).unwrap().pose(mechanism.reference()).unwrap();
+    for place in [Vec3::new(0.5, 2.2, 0.0), Vec3::new(0.3, 2.6, 0.0)] {
+        target.translation = place;
+        for plant in [
+            Plant::IDEAL,
+            Plant { time_constant: 0.05, ..Plant::IDEAL },
+            Plant { delay: 0.05, ..Plant::IDEAL },
+            Plant { delay: 0.03, time_constant: 0.05, noise: 1e-3 },
+        ] {
+            let mut options = ServoOptions::new(&mechanism);
+            (options.dt, options.plant) = (0.002, plant);
+            let mut servo = Servo::new(&mechanism, options).unwrap();
+            let aim = |_| (target.into(), true);
+            let result = simulate(&mut servo, home, 10.0, aim, |_| {}).unwrap();
+            let stall = result.stall;
+            assert!(matches!(stall, Some(Stall::TypeII { .. })), "{plant:?}: {stall:?}");
+        }
+    }
 }
 
 #[test]

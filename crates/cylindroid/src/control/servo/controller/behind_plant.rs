@@ -33,8 +33,11 @@ impl Servo {
         let measured = self.load_configuration(q)?;
         predictor.note(self.coupled.as_ref().map_or(q, |c| c.q()));
         let ahead = aim.after(predictor.plant().lag());
-        let predicted = predictor.predict(&self.mechanism);
-        let mut step = self.step_ideal(predicted, ahead, secondary_velocities)?;
+        predictor.predict(&self.mechanism);
+        if let Some(coupled) = &mut self.coupled {
+            predictor.close(|q, measured| coupled.close_ahead(q, measured))?;
+        }
+        let mut step = self.step_ideal(predictor.q(), ahead, secondary_velocities)?;
         predictor.record(&self.mechanism, &self.rates[..self.mechanism.n()]);
         // The verdict is on the robot, which has not arrived yet.
         self.configuration.copy_from_slice(predictor.measured());

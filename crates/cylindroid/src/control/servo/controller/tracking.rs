@@ -1,8 +1,8 @@
 //! Steps from the actuated joints alone: the passive ones are tracked from step to step.
 //!
 //! Formula  predicted: the closed configuration of the last step, moved by its velocities; measured
-//!          values for the actuated coordinates; then Newton's method on the loop equations
-//!          (`coupled.rs`)
+//!          values for the actuated coordinates; then Newton's method on the loop equations, or where
+//!          that fails their assembly nearby, the actuated coordinates held (`loop_motions.rs`)
 //! Valid    while the actuated joints determine the passive ones: the assembly mode is the one of
 //!          the last step. Near a type II singularity, where two meet, the servo stops
 //! Checked  tests/it/servo/measured.rs, tests/it/servo/measured_twist.rs
