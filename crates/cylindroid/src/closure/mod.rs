@@ -33,6 +33,8 @@ mod statics;
 pub use constraint::closed_chain::ClosedChain;
 pub(crate) use constraint::closed_chain_batched::BatchedConstraintPlan;
 pub use constraint::loop_closure_error::LoopClosureError;
+#[cfg(feature = "sweep")]
+pub(crate) use constraint::rate_rank::rate_rank;
 pub(crate) use constraint::velocity_constraint::check_coordinates;
 pub use constraint::velocity_constraint::{Constraint, ConstraintBlocks, Unit, Units};
 pub use mobility::actuation_map::ActuationMap;

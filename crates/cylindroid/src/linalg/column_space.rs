@@ -101,16 +101,22 @@ impl ColumnSpace {
     /// ```
     #[must_use]
     pub fn of(a: &Matrix, threshold: Threshold) -> Self {
-        Self::decompose(a.clone(), threshold, true)
+        Self::decompose(a.clone(), threshold, 0.0, true)
     }
 
     /// [`ColumnSpace::of`] with only the cut and the largest singular value: those between may be
     /// missing. A third of the time.
     pub(crate) fn cut_of(a: Matrix, threshold: Threshold) -> Self {
-        Self::decompose(a, threshold, false)
+        Self::decompose(a, threshold, 0.0, false)
     }
 
-    fn decompose(mut a: Matrix, threshold: Threshold, all: bool) -> Self {
+    /// The same relative to the largest singular value, or to `size` if that is larger: where all
+    /// entries may be differences of numbers of this size.
+    pub(crate) fn cut_beside(a: Matrix, eps: f64, size: f64) -> Self {
+        Self::decompose(a, Threshold::Relative(eps), size, false)
+    }
+
+    fn decompose(mut a: Matrix, threshold: Threshold, size: f64, all: bool) -> Self {
         let (rows, longest) = (a.rows(), a.rows().max(a.cols()));
         let largest = a.max_abs();
         let scale = if largest > 0.0 && largest.is_finite() { largest } else { 1.0 };
@@ -118,11 +124,11 @@ impl ColumnSpace {
         let qr = Qr::pivoted(a);
         let machine = MACHINE_RANK * longest as f64;
         let dust = match threshold {
-            Threshold::Relative(_) => machine * qr.first_pivot(),
+            Threshold::Relative(_) => machine * qr.first_pivot().max(size / scale),
             Threshold::Absolute(_) => machine / scale,
         };
         let absolute = |first: f64| match threshold {
-            Threshold::Relative(eps) => eps.max(machine) * first,
+            Threshold::Relative(eps) => eps.max(machine) * first.max(size),
             Threshold::Absolute(t) => t.max(machine * first),
         };
         let (regular, rest) = regular_rows(&qr, dust);

@@ -20,10 +20,11 @@ use crate::closure::constraint::constraint_rows::{
     ConstraintRow, constraint_rows, for_each_rate, rate_unit,
 };
 use crate::closure::constraint::loop_closure_error::LoopClosureError;
+use crate::closure::constraint::rate_rank::{rate_rank, rate_space};
 use crate::closure::constraint::velocity_constraint::{Unit, kernel_tolerance};
 use crate::error::{Error, Result};
 use crate::kinematics::State;
-use crate::linalg::{ColumnSpace, CsDecomposition, Matrix, Svd, Threshold};
+use crate::linalg::{CsDecomposition, Matrix, Svd};
 use crate::model::{LoopJoint, Mechanism};
 use crate::tolerance::{CLOSURE_RANK, CORRECTION_RANK};
 
@@ -95,8 +96,7 @@ impl ActuationMap {
         let rates = RateRows::of(state, all, &joints_with_rate, locked);
         let size = &rates.scale;
 
-        let space =
-            ColumnSpace::cut_of(rates.matrix.transpose(), Threshold::Relative(CLOSURE_RANK));
+        let space = rate_space(&rates.matrix, CLOSURE_RANK);
         let kernel = space.complement();
         let actuated = actuated(mechanism, &joints_with_rate, weights);
         let others = (0..size.len()).filter(|i| actuated.iter().all(|(d, _)| d != i));
@@ -232,7 +232,7 @@ impl RateRows {
             return vec![0.0; self.scale.len()];
         }
         let svd = Svd::of(&self.matrix);
-        let mut change = svd.solve(&self.residuals, svd.rank(CORRECTION_RANK).rank);
+        let mut change = svd.solve(&self.residuals, rate_rank(&svd, CORRECTION_RANK));
         change.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= -s);
         change
     }

@@ -14,12 +14,13 @@
 //! Source   Golubitsky & Schaeffer 1985, chapter VII
 //! Checked  tests/it/closure/finite.rs
 
+use crate::closure::constraint::rate_rank::rate_space;
 use crate::closure::constraint::velocity_constraint::check_size;
 use crate::closure::position::coordinates::column_scale;
 use crate::closure::position::initial_guesses::by_name;
 use crate::closure::position::loop_closure::LoopClosure;
 use crate::error::Result;
-use crate::linalg::{ColumnSpace, Matrix, Qr, Threshold, norm};
+use crate::linalg::{Matrix, Qr, norm};
 use crate::model::Mechanism;
 use crate::tolerance::{LOOP_ROUNDING, POSITION_ROUNDING};
 
@@ -64,8 +65,7 @@ impl ReducedPoint {
 }
 
 impl<'a> LyapunovSchmidt<'a> {
-    /// At the configuration `q`, with singular values of C at or below `threshold` times the
-    /// largest counted as zero.
+    /// At the configuration `q`, with the threshold of `rate_rank.rs` for singular values of C.
     pub(crate) fn of(
         mechanism: &'a Mechanism,
         q: &[f64],
@@ -75,7 +75,7 @@ impl<'a> LyapunovSchmidt<'a> {
         let free: Vec<usize> = (0..mechanism.n()).collect();
         check_size(0, free.len())?;
         let start = LoopClosure::at(mechanism, q, &free, length)?;
-        let rows = ColumnSpace::cut_of(start.jacobian.transpose(), Threshold::Relative(threshold));
+        let rows = rate_space(&start.jacobian, threshold);
         let (kernel, complement) = (rows.complement(), rows.basis());
         // The range as the image of N: of the same rank, whatever the threshold cut off.
         let image = Qr::plain(&start.jacobian * &complement);

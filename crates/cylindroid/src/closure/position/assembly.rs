@@ -17,10 +17,12 @@
 use super::coordinates::{at_limit, columns, free_places, largest_change, moved, within_limits};
 use super::loop_closure::LoopClosure;
 use crate::closure::constraint::loop_closure_error::LoopClosureError;
+use crate::closure::constraint::rate_rank::rate_rank;
 use crate::error::Result;
 use crate::inverse::damp;
 use crate::linalg::{Matrix, Svd};
 use crate::model::Mechanism;
+use crate::tolerance::CLOSURE_RANK;
 
 /// Maximum number of steps: a dozen suffice if there is an assembly nearby.
 pub(super) const MAX_STEPS: usize = 200;
@@ -179,9 +181,13 @@ fn damped_step(
     }
 }
 
-/// The damped least-squares change of the coordinates of this Jacobian.
+/// The damped least-squares change of the coordinates of this Jacobian; none where all rates are zero,
+/// or rounding: it would be of any size.
 fn damped_change(jacobian: &Matrix, residuals: &[f64], damping: f64) -> Vec<f64> {
     let svd = Svd::of(jacobian);
+    if rate_rank(&svd, CLOSURE_RANK) == 0 {
+        return vec![0.0; jacobian.cols()];
+    }
     let l = damping * svd.largest();
     svd.apply_gains(residuals, |_, s| -damp(s, l))
 }

@@ -22,9 +22,10 @@ use super::configuration_signature::{Landmarks, link_poses, max_displacement, si
 use super::coordinates::{at_limit, columns, free_places, largest_change, moved, within_limits};
 use super::initial_guesses::{by_name, random};
 use super::loop_closure::LoopClosure;
+use crate::closure::constraint::rate_rank::rate_space;
 use crate::closure::constraint::velocity_constraint::kernel_tolerance;
 use crate::error::{Error, Result};
-use crate::linalg::{ColumnSpace, Matrix, Threshold};
+use crate::linalg::Matrix;
 use crate::model::{CoordinateKind, JointKind, Mechanism};
 use crate::spatial::Vec3;
 use crate::tolerance::{CLOSURE_RANK, SAME_ASSEMBLY, TRIAL_MOVED};
@@ -255,7 +256,7 @@ impl Search<'_> {
     /// scaled), and the tolerance below which their entries count as zero.
     fn motions(&self, q: &[f64]) -> Result<(Matrix, f64)> {
         let rates = columns(&LoopClosure::of(self.mechanism, q)?.jacobian, self.free);
-        let space = ColumnSpace::cut_of(rates.transpose(), Threshold::Relative(CLOSURE_RANK));
+        let space = rate_space(&rates, CLOSURE_RANK);
         Ok((space.complement(), kernel_tolerance(&space)))
     }
 }

@@ -21,6 +21,7 @@ use super::assembly::assemble;
 use super::coordinates::{columns, largest_change, moved, unit_of, within_limits};
 use super::initial_guesses::perturbed;
 use super::loop_closure::LoopClosure;
+use crate::closure::constraint::rate_rank::rate_rank;
 use crate::error::{Result, all_finite};
 use crate::linalg::{Matrix, Svd, norm};
 use crate::model::{Mechanism, NodeKind};
@@ -99,7 +100,7 @@ impl<'a> PathTracker<'a> {
 
     /// The largest rank of J_f at the start and nearby.
     fn generic_rank(&self) -> Result<usize> {
-        let rank = |q: &[f64]| -> Result<usize> { Ok(self.at(q)?.svd.rank(CLOSURE_RANK).rank) };
+        let rank = |q: &[f64]| -> Result<usize> { Ok(rate_rank(&self.at(q)?.svd, CLOSURE_RANK)) };
         let mut most = rank(&self.from)?;
         for number in 0..NEIGHBOURS {
             let guess = perturbed(self.mechanism, &self.from, NEIGHBOUR_DISTANCE, number);

@@ -16,6 +16,7 @@
 use std::ops::Range;
 
 use super::coordinates::columns;
+use crate::closure::constraint::rate_rank::rate_rank;
 use crate::linalg::{Matrix, Qr, Svd};
 use crate::tolerance::CLOSURE_RANK;
 
@@ -43,7 +44,7 @@ impl SignedSingularity {
         for jacobian in jacobians {
             let block = new.block(jacobian);
             let svd = Svd::of(&block);
-            let rank = svd.rank(CLOSURE_RANK).rank;
+            let rank = rate_rank(&svd, CLOSURE_RANK);
             let smallest = rank.checked_sub(1).map_or(0.0, |last| svd.value(last) / svd.value(0));
             if (rank, smallest) > best {
                 best = (rank, smallest);

@@ -10,7 +10,7 @@
 use super::options::MapOptions;
 use crate::closure::{
     LoopEquations, Platform, PlatformChain, PlatformRotation, SignedSingularity, assemble,
-    perturbed,
+    perturbed, rate_rank,
 };
 use crate::error::{Error, Result};
 use crate::linalg::{Matrix, Svd};
@@ -208,7 +208,7 @@ fn loop_rank(jacobians: &[Matrix], loops: usize, kept: &[usize]) -> usize {
 fn rank(jacobians: &[Matrix], kept: &[usize]) -> usize {
     let of = |j: &Matrix| {
         let block = Matrix::from_fn(j.rows(), kept.len(), |i, k| j[(i, kept[k])]);
-        Svd::of(&block).rank(CLOSURE_RANK).rank
+        rate_rank(&Svd::of(&block), CLOSURE_RANK)
     };
     jacobians.iter().map(of).max().unwrap_or(0)
 }

@@ -3,6 +3,7 @@ mod any_matrices;
 mod assembly;
 mod bad_input;
 mod blocks;
+mod cancelling_rates;
 pub(crate) mod case;
 mod continuation;
 mod diagnosis;

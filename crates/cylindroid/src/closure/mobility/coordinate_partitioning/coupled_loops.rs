@@ -9,6 +9,7 @@
 //! Source   Wehage & Haug 1982; least norms: Golub & Van Loan, Matrix Computations, 4th ed., 5.5.6
 //! Checked  src/closure/mobility/coordinate_partitioning.rs
 
+use crate::closure::constraint::rate_rank::rate_size;
 use crate::linalg::{Elimination, Matrix, RankGap, dot, norm};
 use crate::tolerance::MIN_ACTUATED_SHARE;
 
@@ -113,6 +114,7 @@ impl CoupledLoops {
     pub(super) fn solve(&mut self, weights: &[f64]) -> Option<f64> {
         let (p, a) = (self.passive, self.actuated());
         let size = (0..p + a).map(|j| norm(self.system.column(j))).fold(0.0, f64::max);
+        let size = rate_size(size);
         if !size.is_finite() || !self.left.eliminate(&mut self.system, p, GAP.times(size)) {
             return None;
         }
@@ -160,6 +162,8 @@ impl CoupledLoops {
         }
         if most <= GAP.zero * size {
             self.restriction.as_mut_slice().fill(0.0);
+        } else if most < GAP.regular * size {
+            return false;
         }
         for j in 0..t - rank {
             let column = self.restriction.column_mut(j);
