@@ -1,6 +1,7 @@
 //! Singularity-free zones against closed forms and dense searches that share no code with them.
 
 use std::f64::consts::PI;
+use std::path::Path;
 
 use cylindroid::sweep::{LocusKind, Zone, ZoneOptions, ZoneShape};
 use cylindroid::{Error, Mechanism, Rotation, Vec3};
@@ -367,6 +368,31 @@ fn limits_are_bounds() {
     assert!((found.size - 0.05).abs() < 1e-9, "{}", found.size);
     let free = ZoneOptions { limits: false, ..options() };
     assert!(zone(&mechanism, &["x", "y"], free).size > 0.1);
+}
+
+/// A door on two hinges is regular, tilted or not, whichever way its handle points.
+#[test]
+fn doors_are_centres_of_zones() {
+    for axis in [Vec3::Z, Vec3::new(1.0, 2.0, 3.0), Vec3::new(-0.3, 0.8, 0.1)] {
+        for handle in ["[1, 0, 0]", "[0, 1, 0]", "[0.3, 0.2, 0.4]"] {
+            let list = |v: Vec3| format!("[{}, {}, {}]", v.x, v.y, v.z);
+            let text = format!(
+                "reference = \"door\"\nreference_point = {handle}\n\
+                 [[joint]]\nname = \"hinge1\"\ntype = \"revolute\"\n\
+                 between = [\"ground\", \"door\"]\norigin = [0, 0, 0]\naxis = {}\n\
+                 actuated = true\n\
+                 [[joint]]\nname = \"hinge2\"\ntype = \"revolute\"\n\
+                 between = [\"ground\", \"door\"]\norigin = {}\naxis = {}\n",
+                list(axis),
+                list(axis * 0.1),
+                list(axis)
+            );
+            let door = cylindroid::load_text(&text, Path::new("door.toml")).unwrap();
+            let options = ZoneOptions { limits: false, ..ZoneOptions::default() };
+            let found = zone(&door, &["hinge1"], options);
+            assert!(found.size > 0.1, "{axis:?} {handle}: {found:?}");
+        }
+    }
 }
 
 #[test]
