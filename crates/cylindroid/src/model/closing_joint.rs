@@ -14,7 +14,7 @@
 use super::builder::Builder;
 use super::joint::JointKind;
 use super::joint_spec::JointSpec;
-use super::loop_joint::LoopJointSpec;
+use super::loop_joint::{LoopJointSpec, weld_of};
 use crate::spatial::Pose;
 
 impl Builder {
@@ -41,7 +41,7 @@ impl Builder {
         self.loop_joint(LoopJointSpec {
             link_a_from_joint: Pose::IDENTITY,
             link_b_from_joint: joint.link_b_from_joint,
-            ..LoopJointSpec::new(&format!("{half}.weld"), JointKind::Fixed, &half, &joint.b)
+            ..LoopJointSpec::new(&weld_of(&half), JointKind::Fixed, &half, &joint.b)
         })
     }
 }

@@ -63,6 +63,18 @@ pub struct LoopJointSpec {
     pub actuated: bool,
 }
 
+/// The name of the weld of a half of a link (`closing_joint.rs`).
+pub(super) fn weld_of(half: &str) -> String {
+    format!("{half}.weld")
+}
+
+impl LoopJoint {
+    /// True for the weld of a half, with the name of its first link.
+    pub(crate) fn is_cut(&self, first: &str) -> bool {
+        self.kind == JointKind::Fixed && self.name == weld_of(first)
+    }
+}
+
 impl LoopJointSpec {
     /// A passive joint about (or along) z at the origins of both links, without limits.
     ///

@@ -143,19 +143,33 @@ impl LimbEdges {
         joint.kind == JointKind::Free && !joint.actuated
     }
 
+    /// The bodies of the limb, those that fixed loop joints connect as one: a weld is no place where
+    /// motion is passed on.
+    fn welded(&self, mechanism: &Mechanism) -> Sets {
+        let mut welded = Sets::new(mechanism.nodes().len() + 1);
+        for edge in self.edges.iter().filter(|e| e.is_fixed(mechanism)) {
+            welded.merge(edge.bodies[0], edge.bodies[1]);
+        }
+        welded
+    }
+
     /// Number of edges from the ground to a body, within the limb and not through the platform.
-    fn distance(&self, body: usize) -> Option<usize> {
+    fn distance(&self, welded: &Sets, body: usize) -> Option<usize> {
         let mut seen = vec![0];
         let mut next = VecDeque::from([(0, 0)]);
         while let Some((at, far)) = next.pop_front() {
             if at == body {
                 return Some(far);
             }
-            if at == self.platform {
+            if at == welded.of(self.platform) {
                 continue;
             }
-            for edge in self.edges.iter().filter(|e| e.bodies.contains(&at)) {
-                let other = edge.bodies[usize::from(edge.bodies[0] == at)];
+            for edge in &self.edges {
+                let bodies = edge.bodies.map(|b| welded.of(b));
+                if !bodies.contains(&at) {
+                    continue;
+                }
+                let other = bodies[usize::from(bodies[0] == at)];
                 if !seen.contains(&other) {
                     seen.push(other);
                     next.push_back((other, far + 1));
@@ -167,7 +181,9 @@ impl LimbEdges {
 
     /// The centre of the joints of the limb at the platform: the mean of their points.
     pub(crate) fn platform_point(&self, state: &State, near: Vec3) -> Vec3 {
-        self.mean_point(state, near, self.platform, None).unwrap_or(near)
+        let welded = self.welded(state.mechanism());
+        let at = welded.of(self.platform);
+        self.mean_point(state, near, (&welded, at), None).unwrap_or(near)
     }
 
     /// The centre of the other joints of the link that the edge `of` moves: where it passes its
@@ -178,41 +194,50 @@ impl LimbEdges {
         near: Vec3,
         of: EdgeKind,
     ) -> Option<Vec3> {
+        let welded = self.welded(state.mechanism());
         let edge = self.edges.iter().find(|e| e.kind == of)?;
-        let [a, b] = edge.bodies;
-        let (close, far) = match (self.distance(a)?, self.distance(b)?) {
+        let [a, b] = edge.bodies.map(|b| welded.of(b));
+        let (close, far) = match (self.distance(&welded, a)?, self.distance(&welded, b)?) {
             (x, y) if x < y => (a, b),
             (x, y) if x > y => (b, a),
             _ => return None,
         };
-        let at = if far == self.platform { close } else { far };
+        let at = if far == welded.of(self.platform) { close } else { far };
         if at == 0 {
-            return Some(edge.point(state, near, far));
+            return Some(edge.point(state, near, usize::from(far == b)));
         }
-        self.mean_point(state, near, at, Some(of))
+        self.mean_point(state, near, (&welded, at), Some(of))
     }
 
     fn mean_point(
         &self,
         state: &State,
         near: Vec3,
-        body: usize,
+        (welded, body): (&Sets, usize),
         without: Option<EdgeKind>,
     ) -> Option<Vec3> {
-        let there = |e: &&Edge| e.bodies.contains(&body) && Some(e.kind) != without;
-        let points: Vec<Vec3> =
-            self.edges.iter().filter(there).map(|e| e.point(state, near, body)).collect();
+        let point = |e: &Edge| {
+            let side = e.bodies.iter().position(|&b| welded.of(b) == body)?;
+            let other = Some(e.kind) != without && !e.is_fixed(state.mechanism());
+            other.then(|| e.point(state, near, side))
+        };
+        let points: Vec<Vec3> = self.edges.iter().filter_map(point).collect();
         let sum = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
         (!points.is_empty()).then(|| sum * (1.0 / points.len() as f64))
     }
 }
 
 impl Edge {
-    /// The point of a joint, on the side of `body`: its centre; on an axis the point nearest to
-    /// `near`; `near` itself for joints without either.
-    fn point(&self, state: &State, near: Vec3, body: usize) -> Vec3 {
+    /// True for a loop joint that is fixed; fixed joints of the tree are no edges.
+    fn is_fixed(&self, mechanism: &Mechanism) -> bool {
+        matches!(self.kind, EdgeKind::Loop(i) if mechanism.loops()[i].kind == JointKind::Fixed)
+    }
+
+    /// The point of a joint, on the side of its first body (0) or its second one: its centre; on an
+    /// axis the point nearest to `near`; `near` itself for joints without either.
+    fn point(&self, state: &State, near: Vec3, side: usize) -> Vec3 {
         let mechanism = state.mechanism();
-        let first = self.bodies[0] == body;
+        let first = side == 0;
         let pose = |link| state.link_pose(link);
         let sides = |a: Pose, b: Pose| if first { a } else { b };
         let (frame, kind, axis) = match self.kind {

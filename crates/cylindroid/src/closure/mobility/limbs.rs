@@ -157,10 +157,14 @@ impl Limb {
         let wrenches = complement(platform, &motion.basis);
         let locked = constraint.twists(&|j| constraint.columns[j].actuated);
         let actuation = beyond(platform, &locked.basis, &wrenches, center);
+        // The weld of a joint that is cut in a link is no joint of the file.
         let names = |e: &super::limb_graph::Edge| match e.kind {
-            EdgeKind::Joint(i) => mechanism.joints()[i].name.clone(),
-            EdgeKind::Loop(i) => mechanism.loops()[i].name.clone(),
-            EdgeKind::Contact(i) => mechanism.contacts()[i].name.clone(),
+            EdgeKind::Joint(i) => Some(mechanism.joints()[i].name.clone()),
+            EdgeKind::Loop(i) => {
+                let joint = &mechanism.loops()[i];
+                (!joint.is_cut(&mechanism.links()[joint.a].name)).then(|| joint.name.clone())
+            }
+            EdgeKind::Contact(i) => Some(mechanism.contacts()[i].name.clone()),
         };
         let mut space =
             LimbSpace { constraint: wrenches, center, actuators: Vec::new(), edges, motion };
@@ -183,7 +187,7 @@ impl Limb {
             });
         }
         Ok(Self {
-            joints: space.edges.edges.iter().map(names).collect(),
+            joints: space.edges.edges.iter().filter_map(names).collect(),
             actuated: {
                 let actuated = constraint.columns.iter().filter(|c| c.actuated);
                 actuated.map(|c| c.name.clone()).collect()

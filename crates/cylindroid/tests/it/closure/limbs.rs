@@ -144,3 +144,31 @@ fn a_limb_with_a_finger_that_follows_its_joint_is_no_path() {
         assert_eq!(found.twists.order(), 2);
     }
 }
+
+/// A joint that closes a loop and is actuated has a weld in a link, on a side that the order of its
+/// links chooses: the screws of its limb do not depend on it.
+#[test]
+fn welds_of_cut_links_are_no_joints_of_limbs() {
+    let limbs = |links: &str| {
+        let text = format!(
+            "dimension = 2\nreference = \"p\"\nreference_point = [0, 1]\n\
+             [[joint]]\nname = \"q1\"\ntype = \"revolute\"\nbetween = [\"ground\", \"p\"]\n\
+             origin = [0, 0]\nactuated = true\n\
+             [[joint]]\nname = \"q2\"\ntype = \"revolute\"\nbetween = {links}\n\
+             origin = [2, 0]\nactuated = true\n"
+        );
+        let m = cylindroid::load_text(&text, "two-hinges.toml".as_ref()).unwrap();
+        assert!(m.loops()[0].name.ends_with(".weld"));
+        screws(&m).limbs
+    };
+    for links in ["[\"ground\", \"p\"]", "[\"p\", \"ground\"]"] {
+        let found = limbs(links);
+        for (limb, name) in found.iter().zip(["q1", "q2"]) {
+            assert_eq!(limb.joints, [name], "{links}");
+            assert!(limb.serial && limb.constraint.order() == 2 && limb.actuation.order() == 1);
+            // A couple: the angular velocity of its screw is a force.
+            let force = limb.actuation.basis()[0].angular.norm();
+            assert!(force < 1e-9, "{links}, {name}: {force}");
+        }
+    }
+}
