@@ -16,6 +16,7 @@ mod manual;
 mod map;
 mod measured;
 mod motion;
+mod motion_limits;
 mod optimise;
 mod other_programs;
 mod output_files;

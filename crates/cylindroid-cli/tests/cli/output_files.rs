@@ -120,7 +120,7 @@ fn too_many_rows_are_refused_first() {
     for (samples, rows) in [("1000001", "1000001"), ("4e9", "4000000000")] {
         let sweep = ["sweep", "stewart", "--samples", samples, "--quantities", "pose"];
         let message = refused(&[&sweep[..], &["--out", "large.csv"]].concat());
-        let says = format!("--out = large.csv: {rows} rows are too many for CSV");
+        let says = format!("--out = large.csv cannot be used: {rows} rows are too many for CSV");
         assert!(message.contains(&says) && message.contains("name a folder"), "{message}");
     }
 }

@@ -418,6 +418,8 @@ fn zones_that_do_not_exist_are_refused() {
     assert!(message("five-bar", &["q3"], plain()).contains("not actuated"));
     let scales = ZoneOptions { scales: vec![1.0, 0.0], ..plain() };
     assert!(message("five-bar", &["x", "y"], scales).contains("positive"));
+    let tiny = ZoneOptions { scales: vec![1.0, 1e-200], ..plain() };
+    assert!(message("five-bar", &["x", "y"], tiny).starts_with("scales = 1e-200"));
     let far = ZoneOptions { held: held(&[("x", 9.0)]), ..plain() };
     assert!(message("five-bar", &["x", "y"], far).contains("no configuration"));
     let singular = ZoneOptions { start: Some(vec![0.0, 0.3, 0.0]), ..plain() };

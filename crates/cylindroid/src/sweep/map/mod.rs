@@ -4,7 +4,7 @@
 //! Read in this order: `options`, `problem` (what is prescribed, what is singular), `grid`, `flood`
 //! (one working mode from cell to cell), `modes` (all of them), `loci` (curves over two axes), `surfaces`
 //! with `tetrahedra` (triangles over three), `region` (sizes and holes). `zone` is the largest ball or box
-//! around a configuration without singularities, found by `zone_search` with `zone_rays`.
+//! around a configuration without singularities, found by `zone_search` with `zone_problem` and `zone_rays`.
 //!
 //! ```
 //! use cylindroid::sweep::{Axis, LocusKind, Map, MapOptions};
@@ -33,6 +33,7 @@ mod result;
 mod surfaces;
 mod tetrahedra;
 mod zone;
+mod zone_problem;
 mod zone_rays;
 mod zone_search;
 

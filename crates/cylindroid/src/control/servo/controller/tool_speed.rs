@@ -9,7 +9,8 @@
 //!          A joint with the acceleration a of its velocity and a jerk limit J comes to v + a |a| / 2 J
 //!          first, after |a| / J
 //! Shapes   J: 6 x n of the tool, dJ/dq: n of 6 x n       Units    m/s, rad/s
-//! Valid    trees; finite speeds only: otherwise no velocity is changed
+//! Valid    trees; finite speeds only: otherwise no velocity is changed. With limits of the jerk to within a
+//!          tenth, near singularities half
 //! Why so   near a stretched arm the tool hardly moves, however fast the joints are, and then moves faster
 //!          than weak joints can brake
 //! Checked  tests/it/servo/tool_speed.rs
