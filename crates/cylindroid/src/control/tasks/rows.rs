@@ -90,8 +90,7 @@ impl TaskServo {
             for (j, moving) in self.moving.iter_mut().enumerate() {
                 *moving = self.jacobian.column(j).iter().any(|x| *x != 0.0);
             }
-            self.load_distance(i, room);
-            self.load_approach(i, room);
+            self.load_distance(i, room, true);
         }
         let first = self.options.half_spaces.len();
         let Some(collisions) = &mut self.options.collisions else { return Ok(()) };
@@ -110,13 +109,15 @@ impl TaskServo {
             let (gradient, moving) = (&mut self.gradient, &mut self.moving);
             collisions.model.gradient_and_moving_into(&self.state, near, gradient, moving);
             let room = near.distance - gap;
-            self.load_distance(first + place, room);
+            self.load_distance(first + place, room, false);
         }
         Ok(())
     }
 
-    /// The row of a distance whose gradient and moving coordinates are loaded.
-    fn load_distance(&mut self, place: usize, room: f64) {
+    /// The row of a distance whose gradient and moving coordinates are loaded. With limits of the jerk
+    /// joints that speed up go on doing so for a while: where no braking path is looked at (`is_alone`),
+    /// the bound takes the last velocity of the distance into account.
+    fn load_distance(&mut self, place: usize, room: f64, is_alone: bool) {
         let (motions, gradient) = (&self.motions, &self.gradient);
         for (j, entry) in self.entries.iter_mut().enumerate() {
             *entry = motions.entry(|i| gradient[i], j);
@@ -133,32 +134,19 @@ impl TaskServo {
         inequalities.set_row(row, |j| entries[j]);
         inequalities.lower[self.limits.len() + place] = if room > second_order {
             // Half of the way in a step at most.
-            -jerk_limited_stopping_velocity(0.5 * (room - second_order), acceleration, jerk, dt)
+            let way = 0.5 * (room - second_order);
+            let most = jerk_limited_stopping_velocity(way, acceleration, jerk, dt);
+            if is_alone && jerk < f64::INFINITY && jerk > 0.0 {
+                let limits = Limits { acceleration, jerk, ..Limits::NONE };
+                -largest_approach(&limits, (-dot(entries, &self.last), way), most, dt)
+            } else {
+                -most
+            }
         } else {
             // What roundings of steps add up to is taken back; a start further outside is not.
             let own = if room < -ROUNDING * reach { 0.0 } else { room };
             ((second_order - own) / dt).min(acceleration * dt).min(jerk * dt * dt)
         };
-    }
-
-    /// With limits of the jerk, the bound of a row that is loaded takes the velocity and acceleration of
-    /// the distance into account: joints that speed up go on doing so for a while.
-    fn load_approach(&mut self, place: usize, room: f64) {
-        let (motions, entries) = (&self.motions, &self.entries);
-        let most = |of: fn(&Limits) -> f64| {
-            BRAKING * motions.largest_change(|j| entries[j], &self.limits, of)
-        };
-        let (acceleration, jerk) = (most(|l| l.acceleration), most(|l| l.jerk));
-        if !(jerk < f64::INFINITY && jerk > 0.0) {
-            return;
-        }
-        let limits = Limits { acceleration, jerk, ..Limits::NONE };
-        let rate = -dot(entries, &self.last);
-        let room = 0.5 * (room - self.second_order());
-        let bound = &mut self.set.inequalities.lower[self.limits.len() + place];
-        if *bound < 0.0 {
-            *bound = -largest_approach(&limits, (rate, room), -*bound, self.options.dt);
-        }
     }
 
     /// Bound of the second-order change of a distance in a step with the last velocities (m): its
