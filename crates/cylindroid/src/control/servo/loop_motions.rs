@@ -180,7 +180,7 @@ impl LoopMotions {
     /// Closes the loops of a configuration `q` to which commands lead from a closed one, `from`, where
     /// they open on the way by more than [`LoopMotions::close_measured`] permits: the passive joints do
     /// not follow commands, and drives that cannot reach it stop before. It is `from` if that fails.
-    pub(super) fn close_ahead(&mut self, q: &mut [f64], from: &[f64]) -> Result<()> {
+    pub(in crate::control) fn close_ahead(&mut self, q: &mut [f64], from: &[f64]) -> Result<()> {
         let length = self.mechanism.reach();
         if !is_nearly_closed(self.partitioning.load(q)?, length) {
             self.close(q);

@@ -175,8 +175,13 @@ impl Predictor {
         &self.measured
     }
 
-    /// The configuration to which the commands given so far lead, from the measured one.
-    pub(in crate::control) fn predict(&mut self, mechanism: &Mechanism) -> &[f64] {
+    /// The configuration to which the commands given so far lead, from the measured one: [`Self::q`].
+    /// `close` closes its loops, given with the measured one.
+    pub(in crate::control) fn predict(
+        &mut self,
+        mechanism: &Mechanism,
+        close: impl FnOnce(&mut [f64], &[f64]) -> Result<()>,
+    ) -> Result<()> {
         self.q.copy_from_slice(&self.measured);
         mechanism.integrate_in_place(&mut self.q, &self.way, 1.0);
         let noise = self.plant.noise;
@@ -190,14 +195,6 @@ impl Predictor {
                 }
             }
         }
-        &self.q
-    }
-
-    /// Closes the loops of the predicted configuration, given with the measured one.
-    pub(in crate::control) fn close(
-        &mut self,
-        close: impl FnOnce(&mut [f64], &[f64]) -> Result<()>,
-    ) -> Result<()> {
         close(&mut self.q, &self.measured)
     }
 

@@ -104,6 +104,15 @@ impl Motions {
         }
     }
 
+    /// Closes the loops of a predicted configuration, given with the measured one, see
+    /// [`LoopMotions::close_ahead`].
+    pub(super) fn close_ahead(&mut self, q: &mut [f64], from: &[f64]) -> Result<()> {
+        match self {
+            Self::Tree(_) => Ok(()),
+            Self::Loops(loops) => loops.motions.close_ahead(q, from),
+        }
+    }
+
     /// Computes M, with the rows of the tasks at the closed configuration.
     pub(super) fn load(&mut self, tasks: &[TaskRows], length: f64, dt: f64) -> Result<()> {
         let Self::Loops(loops) = self else { return Ok(()) };

@@ -343,9 +343,9 @@ impl TaskServo {
         }
         if let Some(predictor) = &mut self.predictor {
             predictor.note(self.state.q());
-            let lag = predictor.plant().lag();
-            let predicted = predictor.predict(self.state.mechanism());
-            self.state.set(self.motions.close_measured(predicted)?)?;
+            let (lag, mechanism) = (predictor.plant().lag(), self.state.mechanism());
+            predictor.predict(mechanism, |q, from| self.motions.close_ahead(q, from))?;
+            self.state.set(self.motions.close_measured(predictor.q())?)?;
             self.evaluate()?;
             // To the target after that time.
             for rows in &mut self.rows {

@@ -2,7 +2,9 @@
 //! object and joints, noise, and stops before type II singularities.
 
 use cylindroid::closure::{ClosedChain, assemble};
-use cylindroid::control::{MotionTask, StoppedBy, TaskObjective, TaskServo, TaskServoOptions};
+use cylindroid::control::{
+    MotionTask, Plant, StoppedBy, TaskObjective, TaskServo, TaskServoOptions,
+};
 
 use super::*;
 
@@ -93,6 +95,37 @@ fn objects_reach_poses_with_loops_closed_and_noise() {
             let left = mechanism.state(&q).unwrap().pose(end_effector).unwrap().error_to(target);
             let left = left.linear.norm() / mechanism.reach() + left.angular.norm();
             assert!(left < 1e-4 + 10.0 * noise, "{}, noise {noise}: {left:e}", mechanism.name());
+        }
+    }
+}
+
+/// Behind drives that lag, the loops of the configuration to which commands lead are closed: the
+/// object stops before a type II singularity as that of an ideal robot does.
+#[test]
+fn loops_stop_before_singularities_behind_drives() {
+    let mechanism = catalogue::load("five-bar").unwrap();
+    let mut target =
+        mechanism.state(mechanism.home()).unwrap().pose(mechanism.reference()).unwrap();
+    for place in [Vec3::new(0.5, 2.2, 0.0), Vec3::new(0.3, 2.6, 0.0)] {
+        target.translation = place;
+        for plant in [
+            Plant::IDEAL,
+            Plant { time_constant: 0.05, ..Plant::IDEAL },
+            Plant { delay: 0.05, ..Plant::IDEAL },
+            Plant { delay: 0.03, time_constant: 0.05, noise: 1e-3 },
+        ] {
+            let mut options = TaskServoOptions::new(&mechanism);
+            (options.dt, options.plant) = (0.002, plant);
+            let tasks = vec![object(&mechanism, target)];
+            let mut servo = TaskServo::new(&mechanism, tasks, options).unwrap();
+            let result = servo.simulate(mechanism.home(), 10.0, |_, _, _| {});
+            let result = result.unwrap_or_else(|error| panic!("{plant:?}: {error}"));
+            assert_eq!(result.status, Status::Stalled, "{plant:?}, {place:?}");
+            // Beside it passive joints are fast under noise, up to their limits.
+            if plant.noise == 0.0 {
+                let stopped_by = result.reports[0].stopped_by;
+                assert_eq!(stopped_by, Some(StoppedBy::TypeII), "{plant:?}, {place:?}");
+            }
         }
     }
 }

@@ -33,10 +33,10 @@ impl Servo {
         let measured = self.load_configuration(q)?;
         predictor.note(self.coupled.as_ref().map_or(q, |c| c.q()));
         let ahead = aim.after(predictor.plant().lag());
-        predictor.predict(&self.mechanism);
-        if let Some(coupled) = &mut self.coupled {
-            predictor.close(|q, measured| coupled.close_ahead(q, measured))?;
-        }
+        predictor.predict(&self.mechanism, |q, measured| match &mut self.coupled {
+            Some(coupled) => coupled.close_ahead(q, measured),
+            None => Ok(()),
+        })?;
         let mut step = self.step_ideal(predictor.q(), ahead, secondary_velocities)?;
         predictor.record(&self.mechanism, &self.rates[..self.mechanism.n()]);
         // The verdict is on the robot, which has not arrived yet.
