@@ -6,7 +6,7 @@ use cylindroid::inverse::Method;
 use cylindroid::{Error, Mechanism, Servo, ServoOptions, Twist, Vec3};
 
 use crate::robots::Random;
-use crate::rounds::{STEPS, closed_step, push, takes_pushes, target};
+use crate::rounds::{STEPS, closed_step, measured, push, start, takes_pushes, target};
 use crate::watch::{Tally, Watch};
 
 fn options(robot: &Mechanism, random: &mut Random<'_>) -> ServoOptions {
@@ -30,8 +30,9 @@ fn options(robot: &Mechanism, random: &mut Random<'_>) -> ServoOptions {
 }
 
 /// Targets that jump now and then.
-pub(crate) fn follows_targets(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
-    let options = options(robot, random);
+pub(crate) fn follows_targets(robot: &Mechanism, noise: f64, random: &mut Random<'_>) -> Tally {
+    let mut options = options(robot, random);
+    options.plant.noise = noise;
     let mut goal = None;
     steps(robot, options, random, |servo, q, random| {
         let end_effector = servo.options().end_effector;
@@ -78,20 +79,21 @@ fn steps<'b>(
     random: &mut Random<'b>,
     mut step: impl FnMut(&mut Servo, &[f64], &mut Random<'b>) -> Result<(), Error>,
 ) -> Tally {
+    let noise = options.plant.noise;
     let mut watch = Watch::new(robot, options.dt, options.acceleration.unwrap());
     let mut tally = Tally::default();
     // Combinations that define no controller are refused, which is another test's matter.
     let Ok(mut servo) = Servo::new(robot, options) else { return tally };
     let closed = robot.is_closed();
-    let mut q = if closed { robot.home().to_vec() } else { random.configuration(robot) };
+    let mut q = if closed { robot.home().to_vec() } else { start(robot, noise, random) };
     for i in 0..STEPS {
-        if !closed && random.once_in(250) && takes_pushes(robot) {
+        if !closed && random.once_in(250) && takes_pushes(robot) && noise == 0.0 {
             push(robot, &mut q, random);
             watch.push();
             tally.pushes += 1;
         }
         tally.steps += 1;
-        if let Err(error) = step(&mut servo, &q, random) {
+        if let Err(error) = step(&mut servo, &measured(&q, noise, random), random) {
             tally.errors += 1;
             // A loop that opened is an error; a tree has none.
             if !closed {

@@ -30,10 +30,11 @@ pub(crate) enum Kind {
     ClosedDistances,
     SpatialDistances,
     Twists,
+    Noise,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Catalogue,
         Self::Random,
         Self::Jerks,
@@ -43,6 +44,7 @@ impl Kind {
         Self::ClosedDistances,
         Self::SpatialDistances,
         Self::Twists,
+        Self::Noise,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -56,6 +58,7 @@ impl Kind {
             Self::ClosedDistances => "distances of five-bars",
             Self::SpatialDistances => "distances of spatial loops",
             Self::Twists => "twists",
+            Self::Noise => "noisy encoders",
         }
     }
 
@@ -66,7 +69,8 @@ impl Kind {
 
     pub(crate) fn of(seed: u64) -> Self {
         match seed % 20 {
-            0..5 => Self::Catalogue,
+            0..4 => Self::Catalogue,
+            4 => Self::Noise,
             5 | 6 => Self::Twists,
             7..12 => Self::Random,
             12..15 => Self::Jerks,
@@ -102,23 +106,24 @@ pub(crate) fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
     let mut tally = match kind {
         Kind::Catalogue | Kind::Closed => {
             let robot = of_catalogue(random, kind == Kind::Closed);
-            follows_targets(&robot, random)
+            follows_targets(&robot, 0.0, random)
         }
-        Kind::Random => follows_targets(&robot(random, false), random),
+        Kind::Random => follows_targets(&robot(random, false), 0.0, random),
         Kind::Jerks => {
             let way = random.below(4);
             let robot = robot(random, way == 3);
             let robot = with_jerks(&robot, random);
             match way {
-                0 | 1 => follows_targets(&robot, random),
-                2 => many_tasks(&robot, random),
+                0 | 1 => follows_targets(&robot, 0.0, random),
+                2 => many_tasks(&robot, 0.0, random),
                 _ => distances(&robot, random),
             }
         }
         Kind::Twists if random.once_in(4) => follows_twists(&of_catalogue(random, true), random),
         Kind::Twists => follows_twists(&robot(random, false), random),
         Kind::Tasks if random.once_in(5) => closed_tasks(random),
-        Kind::Tasks => many_tasks(&robot(random, false), random),
+        Kind::Tasks => many_tasks(&robot(random, false), 0.0, random),
+        Kind::Noise => noisy(random),
         Kind::Distances => distances(&robot(random, true), random),
         Kind::ClosedDistances => {
             let robot = five_bar(random);
@@ -131,6 +136,17 @@ pub(crate) fn run_with(kind: Kind, random: &mut Random<'_>) -> Tally {
     };
     tally.rounds = 1;
     tally
+}
+
+/// A robot whose servo knows how noisy its encoders are.
+fn noisy(random: &mut Random<'_>) -> Tally {
+    let robot = if random.once_in(3) { of_catalogue(random, false) } else { robot(random, false) };
+    let robot = if random.once_in(3) { with_jerks(&robot, random) } else { robot };
+    let noise = random.power(-6.0, -1.5);
+    match random.below(3) {
+        0 => many_tasks(&robot, noise, random),
+        _ => follows_targets(&robot, noise, random),
+    }
 }
 
 /// The same robot with limits of all jerks.
@@ -229,17 +245,18 @@ fn tasks(robot: &Mechanism, q: &[f64], random: &mut Random<'_>) -> Vec<MotionTas
     (0..count).map(|i| task(i, random)).collect()
 }
 
-fn many_tasks(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
+fn many_tasks(robot: &Mechanism, noise: f64, random: &mut Random<'_>) -> Tally {
     let mut options = TaskServoOptions::new(robot);
     options.dt = random.power(-3.5, -1.8);
     options.acceleration = random.power(-1.0, 4.0);
-    let mut q = random.configuration(robot);
+    options.plant.noise = noise;
+    let mut q = start(robot, noise, random);
     let (dt, acceleration) = (options.dt, options.acceleration);
     let Ok(servo) = TaskServo::new(robot, tasks(robot, &q, random), options) else {
         return Tally::default();
     };
     let mut watch = Watch::new(robot, dt, acceleration);
-    task_servo(servo, &mut q, &mut watch, random, |_, _| Ok(()))
+    task_servo(servo, noise, &mut q, &mut watch, random, |_, _| Ok(()))
 }
 
 /// Many tasks of a closed chain.
@@ -281,10 +298,27 @@ fn closed_servo(
     tally
 }
 
+/// A start from which no measurement seems to lie beyond a limit.
+pub(crate) fn start(robot: &Mechanism, noise: f64, random: &mut Random<'_>) -> Vec<f64> {
+    let mut q = random.configuration(robot);
+    for (x, c) in q.iter_mut().zip(robot.coordinates()).filter(|_| noise > 0.0) {
+        let off = (2.0 * noise).min(0.5 * (c.limits.upper - c.limits.lower));
+        *x = (*x).clamp_to(c.limits.lower + off, c.limits.upper - off);
+    }
+    q
+}
+
+/// What encoders say: off by up to the noise.
+pub(crate) fn measured(q: &[f64], noise: f64, random: &mut Random<'_>) -> Vec<f64> {
+    let mut off = || if noise > 0.0 { random.within(-noise, noise) } else { 0.0 };
+    q.iter().map(|x| x + off()).collect()
+}
+
 /// Steps of a servo of many tasks; `look` is called after each with the step and the
 /// configuration.
 fn task_servo(
     mut servo: TaskServo,
+    noise: f64,
     q: &mut [f64],
     watch: &mut Watch,
     random: &mut Random<'_>,
@@ -293,7 +327,7 @@ fn task_servo(
     let robot = servo.mechanism().clone();
     let mut tally = Tally::default();
     // A push may put bodies into one another: none where distances are watched.
-    let pushes = servo.collision_model_mut().is_none() && takes_pushes(&robot);
+    let pushes = servo.collision_model_mut().is_none() && takes_pushes(&robot) && noise == 0.0;
     for step in 0..STEPS {
         if pushes && random.once_in(250) {
             push(&robot, q, random);
@@ -301,7 +335,7 @@ fn task_servo(
             tally.pushes += 1;
         }
         tally.steps += 1;
-        if let Err(error) = servo.step(q) {
+        if let Err(error) = servo.step(&measured(q, noise, random)) {
             tally.errors += 1;
             tally.violations.push(format!("step {step}: {error}"));
             return tally;
@@ -411,7 +445,7 @@ fn distances(robot: &Mechanism, random: &mut Random<'_>) -> Tally {
     };
     let mut watch = Watch::new(robot, dt, f64::INFINITY);
     let look = |step, q: &[f64]| watched.look(step, &robot.state(q).unwrap());
-    let mut tally = task_servo(servo, &mut q, &mut watch, random, look);
+    let mut tally = task_servo(servo, 0.0, &mut q, &mut watch, random, look);
     watched.add_to(&mut tally);
     tally
 }
