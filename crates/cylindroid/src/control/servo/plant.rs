@@ -10,17 +10,20 @@
 //!          (`loop_motions.rs`)
 //! Noise    z is estimated: a share dt / (dt + `FILTER_TIME`) of what the measurement says beyond the
 //!          last estimate moved by u dt, while that is within twice the noise; otherwise all of it.
-//!          So z jumps by that share, and joints that brake before a position limit may exceed their
-//!          acceleration and jerk limits, while they keep those of position and velocity
+//!          Limits of positions hold for an interval that contains the true z, the last one moved by
+//!          u dt and cut by the measured z and the noise to both sides: its ends come no nearer to a
+//!          limit than u dt takes them, so that braking in time stays possible. Where measurement
+//!          and command contradict one another, its ends move as z does
 //! Units    s, rad or m
 //! Valid    drives of first order with a gain of one; others as far as they resemble them. No
 //!          allocation in steps
 //! Source   Smith, Closer control of loops with dead time, Chem. Eng. Progress 53 (1957), 217-219
-//! Checked  tests/it/servo/plant.rs
+//! Checked  tests/it/servo/plant.rs, tests/it/servo/plant_noise.rs
 
 use crate::error::{Error, Result};
 use crate::model::{CoordinateKind, Limits, Mechanism};
 use crate::scalar::uniform;
+use crate::tolerance::LIMIT_ROUNDING;
 
 /// Time constant of the estimate of the configuration under noise (s).
 const FILTER_TIME: f64 = 0.02;
@@ -41,8 +44,8 @@ pub struct Plant {
     pub delay: f64,
     /// Time constant with which the drives follow their commands, positions or velocities (s).
     pub time_constant: f64,
-    /// Largest error of measured positions [rad or m]: joints keep this distance from their
-    /// position limits.
+    /// Largest error of measured positions [rad or m]: joints are within their position limits
+    /// wherever the measurements may place them.
     pub noise: f64,
 }
 
@@ -123,10 +126,16 @@ pub(in crate::control) struct Predictor {
     q: Vec<f64>,
     /// The last one, moved by the last command.
     expected: Vec<f64>,
+    /// Between these the true one lies, as far as measurements and commands tell; the last ones,
+    /// moved by the last command.
+    range: Vec<[f64; 2]>,
+    expected_range: Vec<[f64; 2]>,
     /// True if a command was given since the robot was at rest.
     is_started: bool,
     /// Coordinates that add: others are measured, not estimated.
     is_scalar: Vec<bool>,
+    /// Those of them that follow their commands: passive joints follow the loops.
+    is_driven: Vec<bool>,
 }
 
 impl Predictor {
@@ -137,7 +146,16 @@ impl Predictor {
         }
         let n = mechanism.n();
         let rows = (plant.delay / dt).ceil();
-        let scalar = |kind| matches!(kind, CoordinateKind::Angle | CoordinateKind::Length);
+        let is_scalar: Vec<bool> = mechanism
+            .coordinates()
+            .iter()
+            .map(|c| matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length))
+            .collect();
+        let mut is_driven = is_scalar.clone();
+        if mechanism.is_closed() {
+            let all = is_driven.iter_mut().zip(mechanism.coordinates());
+            all.for_each(|(driven, coordinate)| *driven &= coordinate.actuated);
+        }
         Some(Self {
             plant,
             dt,
@@ -149,8 +167,11 @@ impl Predictor {
             measured: vec![0.0; n],
             q: vec![0.0; n],
             expected: vec![0.0; n],
+            range: vec![[0.0; 2]; n],
+            expected_range: vec![[0.0; 2]; n],
             is_started: false,
-            is_scalar: mechanism.coordinates().iter().map(|c| scalar(c.kind)).collect(),
+            is_scalar,
+            is_driven,
         })
     }
 
@@ -184,23 +205,56 @@ impl Predictor {
     ) -> Result<()> {
         self.q.copy_from_slice(&self.measured);
         mechanism.integrate_in_place(&mut self.q, &self.way, 1.0);
-        let noise = self.plant.noise;
-        if self.is_started && noise > 0.0 {
-            let share = self.dt / (self.dt + FILTER_TIME);
-            let places = self.q.iter_mut().zip(&self.expected).zip(&self.is_scalar);
-            for ((q, expected), _) in places.filter(|(_, is_scalar)| **is_scalar) {
-                let news = *q - expected;
-                if news.abs() <= 2.0 * noise {
-                    *q = expected + share * news;
-                }
-            }
+        if self.plant.noise > 0.0 {
+            self.estimate();
         }
         close(&mut self.q, &self.measured)
+    }
+
+    /// Estimates the predicted configuration, given as it is measured, and its range.
+    fn estimate(&mut self) {
+        let noise = self.plant.noise;
+        let share = self.dt / (self.dt + FILTER_TIME);
+        let last = self.expected.iter().zip(&self.expected_range).zip(&self.is_scalar);
+        for ((q, range), ((expected, moved), is_scalar)) in
+            self.q.iter_mut().zip(&mut self.range).zip(last)
+        {
+            let measured = [*q - noise, *q + noise];
+            *range = measured;
+            let news = *q - expected;
+            if self.is_started && *is_scalar && news.abs() <= 2.0 * noise {
+                *range = cut(*moved, measured, share);
+                *q = expected + share * news;
+            }
+        }
     }
 
     /// The predicted configuration.
     pub(in crate::control) fn q(&self) -> &[f64] {
         &self.q
+    }
+
+    /// Sets the position limits of these coordinates such that the predicted configuration is within
+    /// them where all that may be the true one are within those of the model.
+    pub(in crate::control) fn keep_off(
+        &self,
+        mechanism: &Mechanism,
+        coordinates: impl Iterator<Item = usize>,
+        limits: &mut [Limits],
+    ) {
+        let noise = self.plant.noise;
+        if noise == 0.0 {
+            return;
+        }
+        // Those of actuated loop joints, beyond n, stay.
+        for (i, own) in coordinates.take_while(|i| *i < mechanism.n()).zip(limits) {
+            let Limits { lower, upper, .. } = mechanism.coordinates()[i].limits;
+            // Narrower ones lock the joint; those of passive joints stay.
+            if self.is_driven[i] && upper - lower > 2.0 * noise {
+                let [least, most] = self.range[i];
+                (own.lower, own.upper) = (lower + (self.q[i] - least), upper - (most - self.q[i]));
+            }
+        }
     }
 
     /// Records the velocities commanded at the predicted configuration.
@@ -209,6 +263,11 @@ impl Predictor {
         let (dt, rows) = (self.dt, self.waiting.len().checked_div(n).unwrap_or(0));
         self.expected.copy_from_slice(&self.q);
         mechanism.integrate_in_place(&mut self.expected, commanded, dt);
+        for ((moved, range), velocity) in
+            self.expected_range.iter_mut().zip(&self.range).zip(commanded)
+        {
+            *moved = range.map(|end| end + velocity * dt);
+        }
         self.is_started = true;
         // In the next step the oldest row is in effect for the rest of its time, then the one after.
         let time = self.plant.time_constant;
@@ -240,6 +299,16 @@ impl Predictor {
             self.oldest = (self.oldest + 1) % rows;
         }
     }
+}
+
+/// What two intervals have in common; if that is nothing, beside rounding, the first moved by a share
+/// towards the second.
+fn cut(expected: [f64; 2], measured: [f64; 2], share: f64) -> [f64; 2] {
+    let [least, most] = [expected[0].max(measured[0]), expected[1].min(measured[1])];
+    if least <= most + LIMIT_ROUNDING * (1.0 + most.abs()) {
+        return [least.min(most), least.max(most)];
+    }
+    [0, 1].map(|end| expected[end] + share * (measured[end] - expected[end]))
 }
 
 /// A robot behind the drives of a plant, in a simulation.

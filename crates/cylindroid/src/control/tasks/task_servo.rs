@@ -345,6 +345,7 @@ impl TaskServo {
             predictor.note(self.state.q());
             let (lag, mechanism) = (predictor.plant().lag(), self.state.mechanism());
             predictor.predict(mechanism, |q, from| self.motions.close_ahead(q, from))?;
+            predictor.keep_off(mechanism, 0.., &mut self.limits);
             self.state.set(self.motions.close_measured(predictor.q())?)?;
             self.evaluate()?;
             // To the target after that time.

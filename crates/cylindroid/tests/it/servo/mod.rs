@@ -19,6 +19,7 @@ mod measured_twist;
 mod moving;
 mod object;
 mod plant;
+mod plant_noise;
 mod projection;
 mod reconfiguration;
 mod reference_point;

@@ -25,7 +25,7 @@ pub(super) struct Drives {
     now: f64,
     plant: Plant,
     /// Largest distance beyond a position limit [rad or m].
-    beyond: f64,
+    pub(super) beyond: f64,
     /// Largest velocity and acceleration beside its limit [-].
     fastest: f64,
 }
@@ -44,7 +44,7 @@ impl Drives {
         }
     }
 
-    fn measured(&self, random: &mut Random) -> Vec<f64> {
+    pub(super) fn measured(&self, random: &mut Random) -> Vec<f64> {
         let noise = self.plant.noise;
         self.q.iter().map(|x| x + random.within(-noise, noise)).collect()
     }
@@ -85,7 +85,7 @@ pub(super) const PLANTS: [Plant; 4] = [
     Plant { delay: 0.0332, time_constant: 0.0, noise: 0.0 },
 ];
 
-fn options(mechanism: &Mechanism, dt: f64) -> ServoOptions {
+pub(super) fn options(mechanism: &Mechanism, dt: f64) -> ServoOptions {
     let mut options = ServoOptions::new(mechanism);
     (options.dt, options.acceleration) = (dt, Some(10.0));
     options.tolerance.position = 1e-3;
@@ -93,8 +93,21 @@ fn options(mechanism: &Mechanism, dt: f64) -> ServoOptions {
     options
 }
 
-fn tool(mechanism: &Mechanism, q: &[f64]) -> Pose {
+pub(super) fn tool(mechanism: &Mechanism, q: &[f64]) -> Pose {
     mechanism.state(q).unwrap().pose(mechanism.tool()).unwrap()
+}
+
+/// Every joint within 2 % of its range of a limit.
+pub(super) fn near_limits(mechanism: &Mechanism, random: &mut Random) -> Vec<f64> {
+    mechanism
+        .coordinates()
+        .iter()
+        .map(|c| {
+            let (l, u) = (c.limits.lower.max(-3.0), c.limits.upper.min(3.0));
+            let share = random.within(-0.02, 0.02);
+            if random.within(0.0, 1.0) < 0.5 { l + share * (u - l) } else { u + share * (u - l) }
+        })
+        .collect()
 }
 
 /// Largest excess over position limits and share of velocity limits while the tool is sent to poses
@@ -109,21 +122,7 @@ fn worst(name: &str, dt: f64, real: Plant, known: Plant) -> (f64, f64) {
         let mut servo = Servo::new(&mechanism, options.clone()).unwrap();
         let mut drives = Drives::new(mechanism.home(), real);
         for _ in 0..3 {
-            // Every joint within 2 % of its range of a limit.
-            let q: Vec<f64> = mechanism
-                .coordinates()
-                .iter()
-                .map(|c| {
-                    let (l, u) = (c.limits.lower.max(-3.0), c.limits.upper.min(3.0));
-                    let share = random.within(-0.02, 0.02);
-                    if random.within(0.0, 1.0) < 0.5 {
-                        l + share * (u - l)
-                    } else {
-                        u + share * (u - l)
-                    }
-                })
-                .collect();
-            let target = tool(&mechanism, &q);
+            let target = tool(&mechanism, &near_limits(&mechanism, &mut random));
             for _ in 0..(0.7 / dt) as usize {
                 let measured = drives.measured(&mut random);
                 servo.step(&measured, target).unwrap();

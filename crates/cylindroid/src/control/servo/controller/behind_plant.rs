@@ -2,6 +2,7 @@
 //!
 //! Checked  tests/it/servo/plant.rs
 
+use super::super::limits::BrakingMargin;
 use super::super::plant::Predictor;
 use super::super::step::{Aim, Status, Step};
 use super::Servo;
@@ -37,6 +38,7 @@ impl Servo {
             Some(coupled) => coupled.close_ahead(q, measured),
             None => Ok(()),
         })?;
+        self.keep_off_limits(predictor);
         let mut step = self.step_ideal(predictor.q(), ahead, secondary_velocities)?;
         predictor.record(&self.mechanism, &self.rates[..self.mechanism.n()]);
         // The verdict is on the robot, which has not arrived yet.
@@ -51,6 +53,19 @@ impl Servo {
             }
         }
         Ok(step)
+    }
+
+    /// Adapts the position limits to what the predicted configuration may be off.
+    fn keep_off_limits(&mut self, predictor: &Predictor) {
+        if predictor.plant().noise == 0.0 {
+            return;
+        }
+        let coordinates = self.chain.coordinates().iter().copied();
+        predictor.keep_off(&self.mechanism, coordinates, &mut self.limits);
+        let (space, dt) = (&self.space, self.options.dt);
+        for (i, (margin, limits)) in self.braking_margins.iter_mut().zip(&self.limits).enumerate() {
+            *margin = BrakingMargin::new(limits, dt, space.is_locked(i));
+        }
     }
 
     /// True if the errors are within tolerance.
