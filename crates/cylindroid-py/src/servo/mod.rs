@@ -30,9 +30,9 @@ pub(crate) use trajectory::PyTrajectory;
 /// A Cartesian servo (resolved-rate control) of one frame: computes joint velocities from joint
 /// positions and a target pose.
 ///
-/// It never violates a position, velocity, acceleration or jerk limit (with `noise`, of position and
-/// velocity), stays bounded at singularities, and reports why it stalls. Closed chains are controlled
-/// at their reference through their actuated joints.
+/// It never violates a position, velocity, acceleration or jerk limit, stays bounded at singularities,
+/// and reports why it stalls. Closed chains are controlled at their reference through their actuated
+/// joints.
 ///
 /// Parameters
 /// ----------
