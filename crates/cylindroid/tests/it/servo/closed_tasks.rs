@@ -2,10 +2,9 @@
 //! object and joints, noise, and stops before type II singularities.
 
 use cylindroid::closure::{ClosedChain, assemble};
-use cylindroid::control::{
-    MotionTask, Plant, StoppedBy, TaskObjective, TaskServo, TaskServoOptions,
-};
+use cylindroid::control::{MotionTask, StoppedBy, TaskObjective, TaskServo, TaskServoOptions};
 
+use super::plant::BEHIND_LOOPS;
 use super::*;
 
 fn closed_chains() -> impl Iterator<Item = Mechanism> {
@@ -108,12 +107,7 @@ fn loops_stop_before_singularities_behind_drives() {
         mechanism.state(mechanism.home()).unwrap().pose(mechanism.reference()).unwrap();
     for place in [Vec3::new(0.5, 2.2, 0.0), Vec3::new(0.3, 2.6, 0.0)] {
         target.translation = place;
-        for plant in [
-            Plant::IDEAL,
-            Plant { time_constant: 0.05, ..Plant::IDEAL },
-            Plant { delay: 0.05, ..Plant::IDEAL },
-            Plant { delay: 0.03, time_constant: 0.05, noise: 1e-3 },
-        ] {
+        for plant in BEHIND_LOOPS {
             let mut options = TaskServoOptions::new(&mechanism);
             (options.dt, options.plant) = (0.002, plant);
             let tasks = vec![object(&mechanism, target)];

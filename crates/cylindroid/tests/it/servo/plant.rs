@@ -333,6 +333,14 @@ fn legs_keep_their_limits() {
     assert!(unknown > 3e-3, "{unknown}");
 }
 
+/// Drives of a closed chain: ideal ones, and ones whose commands lead to loops that are open.
+pub(super) const BEHIND_LOOPS: [Plant; 4] = [
+    Plant::IDEAL,
+    Plant { time_constant: 0.05, ..Plant::IDEAL },
+    Plant { delay: 0.05, ..Plant::IDEAL },
+    Plant { delay: 0.03, time_constant: 0.05, noise: 1e-3 },
+];
+
 /// Closed chains that lag stop before a type II singularity as those that do not: the loops of the
 /// configuration to which their commands lead are closed.
 #[test]
@@ -342,12 +350,7 @@ fn loops_stop_before_singularities_behind_drives() {
     let mut target = mechanism.state(home).unwrap().pose(mechanism.reference()).unwrap();
     for place in [Vec3::new(0.5, 2.2, 0.0), Vec3::new(0.3, 2.6, 0.0)] {
         target.translation = place;
-        for plant in [
-            Plant::IDEAL,
-            Plant { time_constant: 0.05, ..Plant::IDEAL },
-            Plant { delay: 0.05, ..Plant::IDEAL },
-            Plant { delay: 0.03, time_constant: 0.05, noise: 1e-3 },
-        ] {
+        for plant in BEHIND_LOOPS {
             let mut options = ServoOptions::new(&mechanism);
             (options.dt, options.plant) = (0.002, plant);
             let mut servo = Servo::new(&mechanism, options).unwrap();
