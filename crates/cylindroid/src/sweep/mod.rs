@@ -43,6 +43,7 @@ mod options;
 mod own_columns;
 mod parquet_file;
 mod parquet_form;
+mod parquet_header;
 mod parquet_input;
 mod parts;
 mod payload;

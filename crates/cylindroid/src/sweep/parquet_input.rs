@@ -2,13 +2,12 @@
 //!
 //! Valid    columns of numbers without gaps, uncompressed or by Snappy; other columns are ignored. Dates,
 //!          times, decimals in bytes and numbers of 16 bits are refused, as is a column of a name given twice.
-//!          Headers that announce lists of 2^31 truth values, which have no bytes, take seconds for
-//!          each: parquet skips entries one by one (apache/arrow-rs#9874)
+//!          Headers are checked first (`parquet_header.rs`)
 //! Why so   column by column into rows: Parquet's own rows take ten times as long
 //! Checked  tests/sweep/folder.rs::a_part_is_a_file_of_configurations, tests/sweep/parquet_forms.rs
 
 use std::fs::File;
-use std::io::{self, BufReader, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
 use bytes::Bytes;
@@ -21,6 +20,7 @@ use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
 
 use super::parquet_form::Form;
+use super::parquet_header;
 use crate::error::Error;
 use crate::model::open_regular_file;
 
@@ -29,31 +29,56 @@ type Result<T, E = Error> = std::result::Result<T, E>;
 /// Numbers at most: 4 GiB.
 const MOST: usize = 1 << 29;
 
-/// A file beyond whose end nothing is read. The header of a page in a damaged file may announce a list of
-/// 2^31 entries, which Parquet's reader would skip one by one although the file has ended.
-struct Bounded<T>(T);
+/// Bytes at the end of a file: the length of its footer, and that it is one.
+const END: u64 = 8;
 
-impl Length for Bounded<File> {
+/// A file whose headers are checked, and beyond whose end nothing is read. The header of a page in a
+/// damaged file may announce a list of 2^31 entries, which Parquet's reader would skip one by one
+/// although the file has ended.
+struct Checked(File);
+
+impl Length for Checked {
     fn len(&self) -> u64 {
         self.0.len()
     }
 }
 
-impl ChunkReader for Bounded<File> {
-    type T = Bounded<BufReader<File>>;
+impl ChunkReader for Checked {
+    type T = Pages;
 
     fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
-        self.0.get_read(start).map(Bounded)
+        let is_header = start.saturating_add(END) < self.0.len();
+        Ok(Pages { file: self.0.get_read(start)?, is_header })
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes, ParquetError> {
-        self.0.get_bytes(start, length)
+        let bytes = self.0.get_bytes(start, length)?;
+        let end = start.saturating_add(length as u64).saturating_add(END);
+        if end == self.0.len() {
+            let refuse = |what| ParquetError::General(format!("the footer {what}"));
+            parquet_header::check_footer(&bytes).map_err(refuse)?;
+        }
+        Ok(bytes)
     }
 }
 
-impl Read for Bounded<BufReader<File>> {
+/// A file from a page on.
+struct Pages {
+    file: BufReader<File>,
+    /// True before the header of the page, if that is what comes.
+    is_header: bool,
+}
+
+impl Read for Pages {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self.0.read(buffer)? {
+        if self.is_header && !buffer.is_empty() {
+            self.is_header = false;
+            let capacity = self.file.capacity();
+            let ahead = self.file.fill_buf()?;
+            parquet_header::check_page(ahead, ahead.len() < capacity)
+                .map_err(|what| io::Error::other(format!("the header of a page {what}")))?;
+        }
+        match self.file.read(buffer)? {
             0 if !buffer.is_empty() => Err(ErrorKind::UnexpectedEof.into()),
             count => Ok(count),
         }
@@ -138,7 +163,7 @@ fn read_columns(
     let because = |error: ParquetError| {
         refuse(format!("{error}; files without compression or with Snappy's can be read"))
     };
-    let reader = SerializedFileReader::new(Bounded(open_regular_file(path)?)).map_err(because)?;
+    let reader = SerializedFileReader::new(Checked(open_regular_file(path)?)).map_err(because)?;
     let metadata = reader.metadata().file_metadata();
     let columns: Vec<String> =
         metadata.schema_descr().columns().iter().map(|c| c.path().string()).collect();

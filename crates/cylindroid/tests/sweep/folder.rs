@@ -167,9 +167,12 @@ fn a_part_is_a_file_of_configurations() {
     let first = parquet_columns(&findings.join("place-of-column.parquet"), &["q1"]);
     let error = first.unwrap_err().to_string();
     assert!(error.contains("the place of column 'q1' is negative"), "{error}");
-    // A list of 2^31 numbers beyond the end of the file, in the header of a page.
+    // A list of 2^31 numbers beyond the end of the file in the header of a page, where Parquet has a
+    // number; and one of truth values in the footer.
     let error = read("end-of-file.parquet").unwrap_err().to_string();
-    assert!(error.contains("end of file"), "{error}");
+    assert!(error.contains("the header of a page has a field of another kind"), "{error}");
+    let error = read("truth-values.parquet").unwrap_err().to_string();
+    assert!(error.contains("the footer "), "{error}");
     // A page in terms of a dictionary that is not there.
     let page = parquet_columns(&findings.join("page-before-dictionary.parquet"), &["q1", "q.q2"]);
     let error = page.unwrap_err().to_string();

@@ -136,3 +136,41 @@ fn a_column_has_a_name_of_its_own() {
     assert!(error.contains("column 'q1' is given twice"), "{error}");
     assert_eq!(parquet_columns(&path, &["q2"]).unwrap(), [0.5]);
 }
+
+/// A list of 2^31 truth values, which have no bytes, in a field that Parquet does not define takes its
+/// reader seconds: in a footer and in the header of a page. It is refused first.
+#[test]
+fn lists_longer_than_the_file_are_refused() {
+    // As many entries as an i32 counts, after the kind of a field.
+    const LIST: [u8; 6] = [0xf1, 0xff, 0xff, 0xff, 0xff, 0x07];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("file.parquet");
+    write::<DoubleType>(&path, vec![column("q1", Physical::DOUBLE)], &[0.5, 1.5]);
+    let whole = std::fs::read(&path).unwrap();
+    let end = whole.len() - 8;
+    let length = u32::from_le_bytes(whole[end..end + 4].try_into().unwrap());
+    let (pages, old) = whole[..end].split_at(end - length as usize);
+    let read_with = |footer: &[u8], pages: &[u8]| {
+        let length = u32::try_from(footer.len()).unwrap().to_le_bytes();
+        std::fs::write(&path, [pages, footer, &length, b"PAR1"].concat()).unwrap();
+        parquet_columns(&path, &["q1"]).map_err(|error| error.to_string())
+    };
+    assert_eq!(read_with(old, pages).unwrap(), [0.5, 1.5]);
+
+    // A field more before the stop of the footer, its number 15 above that of the last one.
+    let with = |list: &[u8]| [&old[..old.len() - 1], &[0xf9], list, &[0]].concat();
+    assert_eq!(read_with(&with(&[0x23, 1, 2]), pages).unwrap(), [0.5, 1.5]);
+    let error = read_with(&with(&LIST), pages).unwrap_err();
+    assert!(error.contains("the footer announces a list that is longer"), "{error}");
+
+    // The number of rows, field 3, as a list, of which the reader would take the size for a number.
+    let wrong = [&[0x15, 2, 0x29], &LIST[..], &[0]].concat();
+    let error = read_with(&wrong, pages).unwrap_err();
+    assert!(error.contains("the footer has a field of another kind"), "{error}");
+
+    // The list in the place of the header of the first page.
+    let mut damaged = pages.to_vec();
+    damaged[4..11].copy_from_slice(&[&[0xf9], &LIST[..]].concat());
+    let error = read_with(old, &damaged).unwrap_err();
+    assert!(error.contains("the header of a page announces a list"), "{error}");
+}
