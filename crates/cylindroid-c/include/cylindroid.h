@@ -141,8 +141,8 @@ typedef struct cyl_servo_options {
   double delay;
   // Time constant with which the drives follow their commands (s).
   double time_constant;
-  // Largest error of measured positions [rad or m]: joints are within their position limits wherever
-  // the measurements may place them.
+  // Largest error of measured positions [rad or m]: joints keep this distance from their position
+  // limits, wherever the measurements may place them.
   double noise;
   // Time for which a commanded twist holds without a new one (s); infinite for no watchdog.
   double command_timeout;

@@ -53,8 +53,8 @@ pub struct cyl_servo_options {
     pub delay: f64,
     /// Time constant with which the drives follow their commands (s).
     pub time_constant: f64,
-    /// Largest error of measured positions [rad or m]: joints are within their position limits wherever
-    /// the measurements may place them.
+    /// Largest error of measured positions [rad or m]: joints keep this distance from their position
+    /// limits, wherever the measurements may place them.
     pub noise: f64,
     /// Time for which a commanded twist holds without a new one (s); infinite for no watchdog.
     pub command_timeout: f64,

@@ -302,7 +302,7 @@ fn closed_servo(
 pub(crate) fn start(robot: &Mechanism, noise: f64, random: &mut Random<'_>) -> Vec<f64> {
     let mut q = random.configuration(robot);
     for (x, c) in q.iter_mut().zip(robot.coordinates()).filter(|_| noise > 0.0) {
-        let off = (2.0 * noise).min(0.5 * (c.limits.upper - c.limits.lower));
+        let off = (3.0 * noise).min(0.5 * (c.limits.upper - c.limits.lower));
         *x = (*x).clamp_to(c.limits.lower + off, c.limits.upper - off);
     }
     q

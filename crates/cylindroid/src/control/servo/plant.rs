@@ -12,8 +12,9 @@
 //!          last estimate moved by u dt, while that is within twice the noise; otherwise all of it.
 //!          Limits of positions hold for an interval that contains the true z, the last one moved by
 //!          u dt and cut by the measured z and the noise to both sides: its ends come no nearer to a
-//!          limit than u dt takes them, so that braking in time stays possible. Where measurement
-//!          and command contradict one another, its ends move as z does
+//!          limit than u dt takes them, so that braking in time stays possible. They keep the noise
+//!          from the limits, for other drives; where measurement and command contradict one
+//!          another, they move as z does
 //! Units    s, rad or m
 //! Valid    drives of first order with a gain of one; others as far as they resemble them. No
 //!          allocation in steps
@@ -44,8 +45,8 @@ pub struct Plant {
     pub delay: f64,
     /// Time constant with which the drives follow their commands, positions or velocities (s).
     pub time_constant: f64,
-    /// Largest error of measured positions [rad or m]: joints are within their position limits
-    /// wherever the measurements may place them.
+    /// Largest error of measured positions [rad or m]: joints keep this distance from their
+    /// position limits, wherever the measurements may place them.
     pub noise: f64,
 }
 
@@ -235,7 +236,7 @@ impl Predictor {
     }
 
     /// Sets the position limits of these coordinates such that the predicted configuration is within
-    /// them where all that may be the true one are within those of the model.
+    /// them where all that may be the true one keep the noise from those of the model.
     pub(in crate::control) fn keep_off(
         &self,
         mechanism: &Mechanism,
@@ -251,8 +252,11 @@ impl Predictor {
             let Limits { lower, upper, .. } = mechanism.coordinates()[i].limits;
             // Narrower ones lock the joint; those of passive joints stay.
             if self.is_driven[i] && upper - lower > 2.0 * noise {
+                // For drives that are not quite the known ones.
+                let off = noise.min(0.5 * (upper - lower) - noise);
                 let [least, most] = self.range[i];
-                (own.lower, own.upper) = (lower + (self.q[i] - least), upper - (most - self.q[i]));
+                own.lower = lower + off + (self.q[i] - least);
+                own.upper = upper - off - (most - self.q[i]);
             }
         }
     }
