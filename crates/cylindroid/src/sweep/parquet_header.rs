@@ -1,4 +1,5 @@
-//! The headers of a Parquet file, before its reader sees them: no list is longer than its header.
+//! The headers of a Parquet file, before its reader sees them: no list is longer than its
+//! header, nor all lists of truth values together.
 //!
 //! Formula  compact protocol of Thrift: a field is a byte (difference of its number to that of the field
 //!          before, kind), its number if the difference is zero, and its value; a list is a byte (size or
@@ -179,7 +180,7 @@ const DEEPEST: u32 = 64;
 
 /// Why Parquet's reader shall not see a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Flaw {
+enum Flaw {
     /// It ends within, or is not in the protocol: the reader says so itself.
     Unreadable,
     LongList,
@@ -202,7 +203,7 @@ impl Flaw {
 /// # Errors
 /// A list that is longer than the rest, a field of the wrong kind.
 pub(super) fn check_footer(bytes: &[u8]) -> Result<(), &'static str> {
-    match (Walk { rest: bytes }).fields(Some(&FILE), DEEPEST) {
+    match Walk::of(bytes).fields(Some(&FILE), DEEPEST) {
         Ok(()) | Err(Flaw::Unreadable) => Ok(()),
         Err(flaw) => Err(flaw.message()),
     }
@@ -213,7 +214,7 @@ pub(super) fn check_footer(bytes: &[u8]) -> Result<(), &'static str> {
 /// # Errors
 /// Also a header that does not end in these bytes, if the file does not either.
 pub(super) fn check_page(bytes: &[u8], is_all: bool) -> Result<(), &'static str> {
-    let mut walk = Walk { rest: bytes };
+    let mut walk = Walk::of(bytes);
     match walk.fields(Some(&PAGE), DEEPEST) {
         Ok(()) => Ok(()),
         Err(Flaw::Unreadable) if is_all || !walk.rest.is_empty() => Ok(()),
@@ -224,9 +225,15 @@ pub(super) fn check_page(bytes: &[u8], is_all: bool) -> Result<(), &'static str>
 /// A way through a header.
 struct Walk<'a> {
     rest: &'a [u8],
+    /// Truth values in lists that may come, all together.
+    truth_values: u64,
 }
 
-impl Walk<'_> {
+impl<'a> Walk<'a> {
+    fn of(bytes: &'a [u8]) -> Self {
+        Self { rest: bytes, truth_values: bytes.len() as u64 }
+    }
+
     fn pass(&mut self, count: u64) -> Result<(), Flaw> {
         let count = usize::try_from(count).unwrap_or(usize::MAX);
         let after = self.rest.get(count..);
@@ -310,6 +317,10 @@ impl Walk<'_> {
     fn entries(&mut self, size: u64, kinds: &[u8], inner: Inner, depth: u32) -> Result<(), Flaw> {
         if size > self.rest.len() as u64 {
             return Err(Flaw::LongList);
+        }
+        if kinds.iter().all(|kind| Kind::of(*kind) == Some(Kind::Flag)) {
+            self.truth_values = self.truth_values.checked_sub(size).ok_or(Flaw::LongList)?;
+            return Ok(());
         }
         for _ in 0..size {
             for kind in kinds {

@@ -163,6 +163,15 @@ fn lists_longer_than_the_file_are_refused() {
     let error = read_with(&with(&LIST), pages).unwrap_err();
     assert!(error.contains("the footer announces a list that is longer"), "{error}");
 
+    // Many lists that are shorter than the footer, each of as many truth values as zeros follow.
+    let lists = |count: usize| {
+        let first = [&old[..old.len() - 1], &[0xf9, 0xf1, 100]].concat();
+        [&first, &[0x19, 0xf1, 100].repeat(count)[..], &[0x18, 100], &[0; 100], &[0]].concat()
+    };
+    assert_eq!(read_with(&lists(0), pages).unwrap(), [0.5, 1.5]);
+    let error = read_with(&lists(20), pages).unwrap_err();
+    assert!(error.contains("the footer announces a list that is longer"), "{error}");
+
     // The number of rows, field 3, as a list, of which the reader would take the size for a number.
     let wrong = [&[0x15, 2, 0x29], &LIST[..], &[0]].concat();
     let error = read_with(&wrong, pages).unwrap_err();

@@ -135,8 +135,6 @@ pub(in crate::control) struct Predictor {
     is_started: bool,
     /// Coordinates that add: others are measured, not estimated.
     is_scalar: Vec<bool>,
-    /// Those of them that follow their commands: passive joints follow the loops.
-    is_driven: Vec<bool>,
 }
 
 impl Predictor {
@@ -152,11 +150,6 @@ impl Predictor {
             .iter()
             .map(|c| matches!(c.kind, CoordinateKind::Angle | CoordinateKind::Length))
             .collect();
-        let mut is_driven = is_scalar.clone();
-        if mechanism.is_closed() {
-            let all = is_driven.iter_mut().zip(mechanism.coordinates());
-            all.for_each(|(driven, coordinate)| *driven &= coordinate.actuated);
-        }
         Some(Self {
             plant,
             dt,
@@ -172,7 +165,6 @@ impl Predictor {
             expected_range: vec![[0.0; 2]; n],
             is_started: false,
             is_scalar,
-            is_driven,
         })
     }
 
@@ -249,9 +241,12 @@ impl Predictor {
         }
         // Those of actuated loop joints, beyond n, stay.
         for (i, own) in coordinates.take_while(|i| *i < mechanism.n()).zip(limits) {
-            let Limits { lower, upper, .. } = mechanism.coordinates()[i].limits;
-            // Narrower ones lock the joint; those of passive joints stay.
-            if self.is_driven[i] && upper - lower > 2.0 * noise {
+            let coordinate = &mechanism.coordinates()[i];
+            let Limits { lower, upper, .. } = coordinate.limits;
+            // Passive joints follow the loops, not their commands: their limits stay.
+            let is_driven = !mechanism.is_closed() || coordinate.actuated;
+            // Narrower ones lock the joint.
+            if self.is_scalar[i] && is_driven && upper - lower > 2.0 * noise {
                 // For drives that are not quite the known ones.
                 let off = noise.min(0.5 * (upper - lower) - noise);
                 let [least, most] = self.range[i];
