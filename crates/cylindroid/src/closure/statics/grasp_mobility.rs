@@ -122,7 +122,9 @@ pub struct GraspMobility {
     /// Extreme equilibrium forces, a column for each: normal forces of the contacts that sum to 1.
     /// All forces in equilibrium are their combinations with positive weights.
     pub equilibria: Matrix,
-    /// The equilibrium forces of the relative curvature form; empty without equilibrium.
+    /// The equilibrium forces of the relative curvature form: the mean of the extreme ones, or, if
+    /// only others block all free motions, the first that do on the central path to the form with the
+    /// least largest eigenvalue. Empty without equilibrium.
     pub forces: Vec<f64>,
     /// Free motions as columns: principal motions of the relative curvature form, with
     /// `|v|^2 + L^2 |w|^2 = 1` at the centre of the contacts.
@@ -328,13 +330,12 @@ impl Analysis {
                 edge.iter().zip(&forms).map(|(f, form)| f * form[(i, j)] / size).sum()
             })
         };
-        let others: Vec<Vec<f64>> = (0..k)
+        let walls: Vec<Vec<f64>> = (0..k)
             .filter(|&i| !presses[i])
             .map(|i| (0..m).map(|j| dot(kernel.column(j), &self.gaps[i].gradient)).collect())
             .collect();
-        let walls = Matrix::from_fn(others.len(), m, |i, j| others[i][j]);
-        let curvature =
-            RelativeCurvature { forms: self.edges.iter().map(weighted).collect(), walls };
+        let forms = self.edges.iter().map(weighted).collect();
+        let curvature = RelativeCurvature { forms, walls, motions: m };
         let combination = curvature.blocking();
         let eigen = curvature.eigen(&combination.weights);
         let forces = (0..k).map(|i| {
@@ -350,7 +351,7 @@ impl Analysis {
             Some(eigen.values[..m].iter().filter(|value| **value >= -SECOND_ORDER).count());
         report.immobilisation = if m == 0 {
             Immobilisation::FirstOrder
-        } else if combination.largest < -SECOND_ORDER {
+        } else if combination.blocks {
             Immobilisation::SecondOrder
         } else {
             match curvature.opening(&combination) {

@@ -7,9 +7,11 @@
 //! `force_closure` computes the quality of a grasp, by `smallest_support` where a hull is not
 //! enough; `grasp_contacts` reads the contacts from a mechanism. `grasp_mobility` decides whether
 //! the fingers immobilise the object: `contact_gap` computes the gaps to second order,
-//! `equilibrium_forces` the forces that balance each other, `relative_curvature` their forms, and
-//! `separating_direction` an escape. Read them in this order.
+//! `equilibrium_forces` the forces that balance each other, `relative_curvature` their forms and
+//! `central_path` the one that blocks all motions, and `separating_direction` an escape. Read them in
+//! this order.
 
+mod central_path;
 pub(crate) mod contact_forces;
 mod contact_gap;
 pub(crate) mod elastic_chain;

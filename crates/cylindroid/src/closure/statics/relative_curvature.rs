@@ -7,189 +7,207 @@
 //! Shapes   H_r: m x m, m <= 6
 //! Units    none (scaled)
 //! Valid    motions in the cone W y >= 0, W of the contacts that press in no equilibrium: products of
-//!          two of their rows are added to the forms with positive weights. Whether one form, or two
-//!          without walls, block all motions is decided exactly; for more, forces that do are
-//!          searched, and so is the motion that opens the gaps most: both may be missed
+//!          two of their rows are added to the forms with positive weights. Whether one combination
+//!          blocks all motions is decided (`central_path.rs`); with more than four walls, or several
+//!          forms, none may although all motions are blocked. The motion that opens the gaps most is
+//!          searched, and may be missed
 //! Why so   for each motion forces of its own may suffice, but a common form is a proof
-//! Source   Rimon & Burdick 1998, part II; Connelly & Whiteley 1996 (prestress stability)
-//! Checked  tests/it/closure/grasp_mobility/mod.rs
+//! Source   Rimon & Burdick 1998, part II; Connelly & Whiteley 1996 (prestress stability);
+//!          products of walls: Parrilo 2000 (copositive forms)
+//! Checked  tests/it/closure/grasp_mobility/equilibria.rs, tests in this file
 
+use super::central_path::CentralPath;
+use super::nearest_point::nearest_point;
 use super::separating_direction::separating_direction;
 use crate::linalg::{Matrix, SymmetricEigen, dot, norm};
 use crate::scalar::uniform;
 use crate::tolerance::{CANCELLED, SECOND_ORDER};
 
-/// Steps of the search for weights, of the search for two, and random motions tried.
-/// No form leaves the combination for good: its weight may grow again.
-const LEAST_WEIGHT: f64 = 1e-30;
-const STEPS: u32 = 500;
-const HALVINGS: usize = 80;
-const TRIED: usize = 200;
+/// The path ends this near to the least largest eigenvalue.
+const GAP: f64 = 0.1 * SECOND_ORDER;
+/// Sums of principal motions that are tried, with all signs; the best motions, which are improved.
+const TRIED: usize = 8;
+const IMPROVED: usize = 8;
+/// Steps of an ascent. Forms and walls this near to the least one take part, nearer ones after each
+/// failure: no step longer than a share of it leads on.
+const STEPS: usize = 100;
+const NEAR: f64 = 0.1;
+const NEARER: f64 = 0.2;
+const NEAREST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-3;
+/// Share of the rise that the slope promises.
+const RISE: f64 = 0.1;
 
 /// The forms of a grasp on its free motions.
 pub(super) struct RelativeCurvature {
     /// H_r for each edge of the equilibrium forces.
     pub(super) forms: Vec<Matrix>,
     /// Rates of the other gaps.
-    pub(super) walls: Matrix,
+    pub(super) walls: Vec<Vec<f64>>,
+    /// Number of free motions.
+    pub(super) motions: usize,
 }
 
 /// A combination of the forms.
 pub(super) struct Combination {
-    /// A weight for each edge; they sum to 1.
+    /// A weight for each edge; they sum to 1. The first ones found that block all motions on the way
+    /// from equal weights to those with the least largest eigenvalue; equal ones if none do.
     pub(super) weights: Vec<f64>,
-    /// Largest eigenvalue, with the products of the walls.
-    pub(super) largest: f64,
+    /// True if it blocks all motions within the walls.
+    pub(super) blocks: bool,
+    /// Second moments of motions along which no combination is negative in the mean: Z.
+    open: Option<Matrix>,
 }
 
 impl RelativeCurvature {
-    fn motions(&self) -> usize {
-        self.walls.cols()
-    }
-
     /// Eigenvalues, largest first, and eigenvectors of a combination of the forms.
     pub(super) fn eigen(&self, weights: &[f64]) -> SymmetricEigen<6> {
-        eigen(&self.forms, weights, self.motions())
+        let m = self.motions;
+        let pairs = || self.forms.iter().zip(weights);
+        eigen(&Matrix::from_fn(m, m, |i, j| pairs().map(|(form, w)| w * form[(i, j)]).sum()))
     }
 
-    /// The combination with the least largest eigenvalue found; the first negative one is enough.
+    /// A motion inside of all walls; any one without walls.
+    fn inside(&self) -> Option<Vec<f64>> {
+        if self.walls.is_empty() {
+            return Some((0..self.motions).map(|i| if i == 0 { 1.0 } else { 0.0 }).collect());
+        }
+        separating_direction(&self.walls)
+    }
+
+    /// The combination that blocks all motions, if there is one.
     pub(super) fn blocking(&self) -> Combination {
-        let m = self.motions();
-        let mut all = self.forms.clone();
-        for i in 0..self.walls.rows() {
-            for j in 0..i {
-                all.push(Matrix::from_fn(m, m, |a, b| {
-                    let product = |a, b| self.walls[(i, a)] * self.walls[(j, b)];
-                    0.5 * (product(a, b) + product(b, a))
-                }));
-            }
-        }
+        let m = self.motions;
         let edges = self.forms.len();
-        // Weights of the edges sum to one; those of the products of walls come on top.
-        let at = |weights: &[f64]| -> Combination {
-            let sum: f64 = weights[..edges].iter().sum();
-            let scaled: Vec<f64> = weights.iter().map(|w| w / sum).collect();
-            let largest = eigen(&all, &scaled, m).values[0];
-            Combination { weights: scaled[..edges].to_vec(), largest }
-        };
-        let even = |count: usize| {
-            let share = 1.0 / f64::from(u32::try_from(count).unwrap_or(u32::MAX));
-            (0..all.len()).map(|i| if i < count { share } else { 0.0 }).collect::<Vec<f64>>()
-        };
-        let mut best = at(&even(edges));
-        let keep = |found: Combination, best: &mut Combination| {
-            if found.largest < best.largest {
-                *best = found;
-            }
-            best.largest < -SECOND_ORDER
-        };
-        if best.largest < -SECOND_ORDER || all.len() == 1 {
-            return best;
+        let even = vec![1.0 / f64::from(u32::try_from(edges).unwrap_or(u32::MAX)); edges];
+        let blocks = self.eigen(&even).values[..m].first().is_none_or(|v| *v < -SECOND_ORDER);
+        let mut combination = Combination { weights: even, blocks, open: None };
+        if blocks || (edges == 1 && self.walls.is_empty()) {
+            return combination;
         }
-        if all.len() == 2 && edges == 2 {
-            // The largest eigenvalue is convex in the weight.
-            let (mut low, mut high) = (0.0, 1.0);
-            for _ in 0..HALVINGS {
-                let third = (high - low) / 3.0;
-                let at = |w: f64| at(&[w, 1.0 - w]);
-                let (left, right) = (at(low + third), at(high - third));
-                if left.largest < right.largest {
-                    high -= third;
-                } else {
-                    low += third;
-                }
-                if keep(left, &mut best) || keep(right, &mut best) {
-                    break;
-                }
+        let Some(inside) = self.inside() else { return combination };
+        let mut path = CentralPath::new(&self.forms, &self.walls, &inside);
+        loop {
+            let centre = path.step();
+            if eigen(&centre.combination).values[0] < -SECOND_ORDER {
+                combination.weights = centre.weights;
+                combination.blocks = true;
+                return combination;
             }
-            return best;
-        }
-        let mut weights = even(all.len());
-        for step in 1..=STEPS {
-            let worst = eigen(&all, &weights, m).vectors[0];
-            let values: Vec<f64> =
-                all.iter().map(|form| dot(&form.mul_vec(&worst[..m]), &worst[..m])).collect();
-            let size = norm(&values);
-            if !(size > 0.0) {
-                break;
-            }
-            let rate = 1.0 / f64::from(step).sqrt();
-            let steps = weights.iter_mut().zip(&values);
-            steps.for_each(|(w, value)| *w = (*w * (-rate * value / size).exp()).max(LEAST_WEIGHT));
-            let sum: f64 = weights.iter().sum();
-            weights.iter_mut().for_each(|w| *w /= sum);
-            if keep(at(&weights), &mut best) {
+            if !(centre.gap > GAP) {
                 break;
             }
         }
-        best
+        combination.open = Some(path.moments());
+        combination
     }
 
     /// The unit motion found along which the least of all forms and walls is largest, with that
     /// value: positive where it opens all gaps.
     pub(super) fn opening(&self, combination: &Combination) -> Option<(f64, Vec<f64>)> {
-        let m = self.motions();
-        let edges = self.forms.len();
-        let one = |r: usize| (0..edges).map(|i| if i == r { 1.0 } else { 0.0 }).collect();
-        let mut starts: Vec<Vec<f64>> = Vec::new();
-        for weights in (0..edges).map(one).chain([combination.weights.clone()]) {
-            let found = self.eigen(&weights);
-            for vector in &found.vectors[..m] {
-                starts.push(vector[..m].to_vec());
-                starts.push(vector[..m].iter().map(|x| -x).collect());
-            }
+        let starts = self.starts(combination).into_iter().filter_map(unit);
+        let mut tried: Vec<(f64, Vec<f64>)> = starts.map(|y| (self.least(&y), y)).collect();
+        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+        tried.truncate(IMPROVED);
+        let improved = tried.into_iter().map(|(value, y)| self.improved(value, y));
+        improved.max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Motions to begin with, which turn with the forms: principal motions of the combination and of
+    /// the open motions, and sums of these with all signs, since those of eigenvectors are arbitrary.
+    fn starts(&self, combination: &Combination) -> Vec<Vec<f64>> {
+        let m = self.motions;
+        let own = self.eigen(&combination.weights);
+        let open = combination.open.as_ref().map(eigen);
+        let inside = self.inside().filter(|_| !self.walls.is_empty());
+        let mut starts: Vec<Vec<f64>> = inside.into_iter().collect();
+        for axis in [Some(own), open].iter().flatten().flat_map(|found| &found.vectors[..m]) {
+            starts.extend([1.0, -1.0].map(|sign| axis[..m].iter().map(|x| sign * x).collect()));
         }
-        let walls: Vec<Vec<f64>> = self.walls.to_rows();
-        starts.extend(separating_direction(&walls));
-        let count = starts.len();
-        for i in 0..count {
-            for j in 0..i {
-                starts.push(starts[i].iter().zip(&starts[j]).map(|(a, b)| a + b).collect());
-            }
-        }
+        let axes = open.unwrap_or(own).vectors;
+        let sizes = open.map_or([1.0; 6], |open| open.values.map(|value| value.max(0.0).sqrt()));
         let mut seed = 0;
-        let mut random = || 2.0 * uniform(&mut seed) - 1.0;
-        starts.extend((0..TRIED).map(|_| (0..m).map(|_| random()).collect()));
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        let improve = |y: Vec<f64>, best: &mut Option<(f64, Vec<f64>)>| {
-            let size = norm(&y);
-            if size > CANCELLED {
-                let y: Vec<f64> = y.iter().map(|y| y / size).collect();
-                let value = self.least(&y);
-                if best.as_ref().is_none_or(|b| value > b.0) {
-                    *best = Some((value, y));
-                    return true;
+        for round in 0..TRIED {
+            let even = round % 2 == 0;
+            let share = |size: &f64| uniform(&mut seed) * if even { *size } else { 1.0 };
+            let shares: Vec<f64> = sizes[..m].iter().map(share).collect();
+            for signs in 0..1_usize << m {
+                let share = |k: usize| if (signs >> k) & 1 == 0 { shares[k] } else { -shares[k] };
+                let entry = |i: usize| (0..m).map(|k| share(k) * axes[k][i]).sum();
+                starts.push((0..m).map(entry).collect());
+            }
+        }
+        starts
+    }
+
+    /// The motion at the end of an ascent of the least of all forms and walls, with its value.
+    fn improved(&self, mut value: f64, mut y: Vec<f64>) -> (f64, Vec<f64>) {
+        let mut near = NEAR;
+        let mut last = 0.5;
+        for _ in 0..STEPS {
+            let found = self.ascent(&y, value + near).and_then(|(slope, along)| {
+                let lengths =
+                    std::iter::successors(Some(f64::min(2.0 * last, 1.0)), |s| Some(0.5 * s));
+                lengths.take_while(|length| *length > SHORTEST * near).find_map(|length| {
+                    let moved = y.iter().zip(&along).map(|(y, a)| y + length * a).collect();
+                    let moved = unit(moved)?;
+                    let reached = self.least(&moved);
+                    (reached > value + RISE * length * slope).then_some((length, reached, moved))
+                })
+            });
+            if let Some(found) = found {
+                (last, value, y) = found;
+            } else {
+                near *= NEARER;
+                last = near;
+                if near < NEAREST {
+                    break;
                 }
             }
-            false
+        }
+        (value, y)
+    }
+
+    /// The unit direction along which the forms and walls up to a level rise most steeply, with the
+    /// least of their slopes: the nearest point of the hull of their gradients on the sphere.
+    fn ascent(&self, y: &[f64], level: f64) -> Option<(f64, [f64; 6])> {
+        let mut gradients: Vec<[f64; 6]> = Vec::new();
+        let mut add = |value: f64, gradient: &[f64]| {
+            if value <= level {
+                let along = dot(gradient, y);
+                let mut tangent = [0.0; 6];
+                tangent.iter_mut().zip(gradient).zip(y).for_each(|((t, g), y)| *t = g - along * y);
+                gradients.push(tangent);
+            }
         };
-        for start in starts {
-            improve(start, &mut best);
+        for form in &self.forms {
+            let product = form.mul_vec(y);
+            add(dot(&product, y), &product.iter().map(|x| 2.0 * x).collect::<Vec<f64>>());
         }
-        // Steps of a random search, smaller after each failure.
-        let mut step = 0.3;
-        for _ in 0..TRIED {
-            let Some((_, y)) = &best else { break };
-            let next = y.iter().map(|y| y + step * random()).collect();
-            step *= if improve(next, &mut best) { 1.5 } else { 0.93 };
-        }
-        best
+        self.walls.iter().for_each(|wall| add(dot(wall, y), wall));
+        let size = gradients.iter().map(|gradient| norm(gradient)).fold(0.0, f64::max);
+        let found = nearest_point(y.len(), size, |n| {
+            let farthest = gradients.iter().max_by(|a, b| dot(*a, n).total_cmp(&dot(*b, n)));
+            farthest.copied().unwrap_or_default()
+        });
+        (found.lower > 0.0).then(|| (found.lower, found.away.map(|x| -x)))
     }
 
     /// Smallest of all forms and walls at a unit motion.
     fn least(&self, y: &[f64]) -> f64 {
         let forms = self.forms.iter().map(|form| dot(&form.mul_vec(y), y));
-        forms.chain(self.walls.mul_vec(y)).fold(f64::INFINITY, f64::min)
+        forms.chain(self.walls.iter().map(|wall| dot(wall, y))).fold(f64::INFINITY, f64::min)
     }
 }
 
-fn eigen(forms: &[Matrix], weights: &[f64], m: usize) -> SymmetricEigen<6> {
-    let entry = |i: usize, j: usize| -> f64 {
-        if i >= m || j >= m {
-            return 0.0;
-        }
-        forms.iter().zip(weights).map(|(form, w)| w * form[(i, j)]).sum()
-    };
+fn unit(y: Vec<f64>) -> Option<Vec<f64>> {
+    let size = norm(&y);
+    (size > CANCELLED).then(|| y.iter().map(|y| y / size).collect())
+}
+
+fn eigen(form: &Matrix) -> SymmetricEigen<6> {
+    let m = form.rows();
+    let entry = |i: usize, j: usize| if i < m && j < m { form[(i, j)] } else { 0.0 };
     SymmetricEigen::of(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))), m)
 }
 
@@ -200,7 +218,8 @@ mod tests {
     fn found(forms: &[[[f64; 2]; 2]], walls: &[[f64; 2]]) -> (bool, bool) {
         let of = |rows: &[[f64; 2]]| Matrix::from_fn(rows.len(), 2, |i, j| rows[i][j]);
         let forms = forms.iter().map(|form| of(form)).collect();
-        let curvature = RelativeCurvature { forms, walls: of(walls) };
+        let walls = walls.iter().map(|wall| wall.to_vec()).collect();
+        let curvature = RelativeCurvature { forms, walls, motions: 2 };
         let combination = curvature.blocking();
         assert!((combination.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
         let opening = curvature.opening(&combination);
@@ -208,7 +227,7 @@ mod tests {
             assert_eq!(curvature.least(&y), value);
             value > SECOND_ORDER
         });
-        (combination.largest < -SECOND_ORDER, opens)
+        (combination.blocks, opens)
     }
 
     #[test]
