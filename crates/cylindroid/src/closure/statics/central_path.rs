@@ -43,9 +43,8 @@ pub(super) struct Centre {
     pub(super) weights: Vec<f64>,
     /// The combination, products of walls included.
     pub(super) combination: Matrix,
-    /// No combination has a largest eigenvalue below it.
-    pub(super) bound: f64,
-    /// Largest eigenvalues of combinations exceed the least one by no more (lambda - t).
+    /// By no more does the largest eigenvalue exceed the least one of all combinations
+    /// (lambda - t).
     pub(super) gap: f64,
 }
 
@@ -167,17 +166,13 @@ impl<'a> CentralPath<'a> {
         let step = free.mul_vec(&solution[..n - 1]);
         let scale = if length > WHOLE { (1.0 + length).recip() } else { 1.0 };
         // 1 + X = U diag U^T, so that L U diag^(1/2) is the new root.
-        let mut change = [[0.0; 6]; 6];
-        let mut k = 0;
-        for i in 0..m {
-            for j in i..m {
-                let x = if i == j { step[k] } else { step[k] / 2.0_f64.sqrt() };
-                change[i][j] = scale * x + if i == j { 1.0 } else { 0.0 };
-                change[j][i] = change[i][j];
-                k += 1;
-            }
-        }
-        let eigen = SymmetricEigen::of(change, m);
+        let entry = |i: usize, j: usize| {
+            let (i, j) = (i.min(j), i.max(j));
+            let x = if j < m { scale * step[i * m - i * (i + 1) / 2 + j] } else { 0.0 };
+            if i == j { 1.0 + x } else { x / 2.0_f64.sqrt() }
+        };
+        let change = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
+        let eigen = SymmetricEigen::<6>::of(change, m);
         let root = Matrix::from_fn(m, m, |i, j| eigen.vectors[j][i] * eigen.values[j].sqrt());
         self.factor = with_unit_trace(&self.factor * &root);
         self.bound += scale * solution[n - 1];
@@ -210,12 +205,7 @@ impl<'a> CentralPath<'a> {
             }
         }
         let count = u32::try_from(edges + self.pairs() + m).map_or(f64::INFINITY, f64::from);
-        Centre {
-            weights: weights[..edges].to_vec(),
-            combination,
-            bound: self.bound,
-            gap: count * self.mu,
-        }
+        Centre { weights: weights[..edges].to_vec(), combination, gap: count * self.mu }
     }
 }
 
@@ -295,7 +285,8 @@ mod tests {
             let mut path = path(&program);
             let mut last = f64::INFINITY;
             loop {
-                let Centre { weights, combination, bound, gap } = path.step();
+                let Centre { weights, combination, gap } = path.step();
+                let bound = path.bound;
                 assert!(
                     (weights.iter().sum::<f64>() - 1.0).abs() < 1e-12
                         && weights.len() == 1 + round % 7
@@ -338,7 +329,7 @@ mod tests {
         }
         let expected = 1.11 / 12.11;
         assert!((centre.weights[0] - expected).abs() < 1e-8, "{centre:?}");
-        assert!((centre.bound - (1.0 - 11.0 * expected)).abs() < 1e-8, "{centre:?}");
+        assert!((path.bound - (1.0 - 11.0 * expected)).abs() < 1e-8, "{centre:?}");
     }
 
     /// Rotated and in another order, also from another motion inside: the same points.
@@ -370,7 +361,7 @@ mod tests {
                 assert!(off < 1e-9, "{round} {step}: {off:e}");
                 let off = turned(&a.combination).max_difference(&b.combination);
                 assert!(off < 1e-8, "{round} {step}: {off:e}");
-                assert!((a.bound - b.bound).abs() < 1e-10);
+                assert!((here.bound - there.bound).abs() < 1e-10);
             }
         }
     }

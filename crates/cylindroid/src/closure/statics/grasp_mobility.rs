@@ -356,7 +356,15 @@ impl Analysis {
         } else {
             match curvature.opening(&combination) {
                 Some((least, y)) if least > SECOND_ORDER => {
-                    let velocity = kernel.mul_vec(&y);
+                    let mut velocity = kernel.mul_vec(&y);
+                    // The opposite motion often opens them as much.
+                    let back: Vec<f64> = y.iter().map(|y| -y).collect();
+                    let first = velocity.iter().find(|x| x.abs() > EQUAL_CURVATURES);
+                    if first.is_some_and(|x| *x < 0.0)
+                        && curvature.least(&back) > least - EQUAL_CURVATURES
+                    {
+                        velocity.iter_mut().for_each(|x| *x = -*x);
+                    }
                     report.escape = self.second_order_escape(&velocity, &presses);
                     proved_by(report.escape.as_ref())
                 }

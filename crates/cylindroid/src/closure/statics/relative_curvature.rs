@@ -194,7 +194,7 @@ impl RelativeCurvature {
     }
 
     /// Smallest of all forms and walls at a unit motion.
-    fn least(&self, y: &[f64]) -> f64 {
+    pub(super) fn least(&self, y: &[f64]) -> f64 {
         let forms = self.forms.iter().map(|form| dot(&form.mul_vec(y), y));
         forms.chain(self.walls.iter().map(|wall| dot(wall, y))).fold(f64::INFINITY, f64::min)
     }

@@ -126,12 +126,12 @@ fn one_equilibrium_and_few_walls_are_decided() {
     assert!(mobile > 100 && higher > 20, "{count:?} {second}");
 }
 
-/// Hundreds of extreme equilibria: 24 fingers around a ball, which rotates, a smaller and a larger
+/// Hundreds of extreme equilibria: 20 fingers around a ball, which rotates, a smaller and a larger
 /// one.
 #[test]
 fn many_fingers() {
-    let mut random = Random(24);
-    let outward: Vec<Vec3> = (0..24)
+    let mut random = Random(20);
+    let outward: Vec<Vec3> = (0..20)
         .map(|_| {
             let v = random.vec3(1.0);
             v * (1.0 / v.norm())
@@ -144,7 +144,7 @@ fn many_fingers() {
     ] {
         let touches = around(&outward, POINT, Surface::Ball(radius));
         let found = mobility(&touches, SPACE);
-        assert!(found.equilibria.cols() > 300, "{}", found.equilibria.cols());
+        assert!(found.equilibria.cols() > 100, "{}", found.equilibria.cols());
         assert_found(&found, verdict, (3, if radius > 1.0 { 0 } else { 3 }));
         if radius < 1.0 {
             assert_escapes(&touches, &found, SPACE);
