@@ -31,9 +31,9 @@ use crate::mechanism::PyMechanism;
 /// equilibria : ndarray, (k, r)
 ///     Extreme equilibrium forces as columns: normal forces of the k contacts that sum to 1.
 /// forces : ndarray, (k,)
-///     Equilibrium forces of the form: the mean of the extreme ones, or, if only others block all
-///     free motions, the first that do on the way to the form with the least largest eigenvalue;
-///     empty without equilibrium.
+///     Equilibrium forces of the form: the mean of the extreme ones, or, if their form is not
+///     negative definite and others block all free motions, the first that do on the way to the
+///     form with the least largest eigenvalue; empty without equilibrium.
 /// free_motions : ndarray, (d, m)
 ///     Principal free motions as columns: twists at `point` in world axes.
 /// curvatures : ndarray, (m,)

@@ -3,27 +3,38 @@
 //!
 //! Formula  min lambda_max(sum w_r H_r + sum c_ij (a_i a_j^T + a_j a_i^T) / 2), w, c >= 0,
 //!          sum w_r = 1; its dual: max t, <H_r, Z> >= t, a_i^T Z a_j >= 0, tr Z = 1, Z positive
-//!          semidefinite. On the path w_r (<H_r, Z> - t) = c_ij a_i^T Z a_j = mu, and the
-//!          combination is lambda 1 - mu Z^-1 with lambda - t = (r + s + m) mu
+//!          semidefinite. On the path w_r (<H_r, Z> - t) = c_ij a_i^T Z a_j = mu, the combination
+//!          is lambda 1 - mu Z^-1, and lambda - t = (r + s + m) mu
 //! Shapes   H_r: m x m, r of them; a_i: m entries, s pairs of them; m <= 6
 //! Units    none (scaled)
-//! Valid    if some motion has a positive product with all a_i; weights are rounded to the precision
-//!          of numbers over mu
+//! Valid    if some motion has a positive product with all a_i; the relative error of weights is about
+//!          1e-16 / mu
 //! Why so   each point of the path is the only one for its mu: it turns with the matrices, and does
-//!          not depend on their order. Newton's method in the metric of the barrier never leaves
-//!          its domain with steps of length below one
+//!          not depend on their order
 //! Source   Nesterov & Nemirovskii 1994; Vandenberghe & Boyd 1996
 //! Checked  tests in this file
 
 use crate::error::all_finite;
-use crate::linalg::{Matrix, Qr, SymmetricEigen, dot, norm, solve_upper};
+use crate::linalg::{Matrix, Qr, SymmetricEigen, dot, max_abs, norm, solve_upper};
 
-/// Decrease of mu from a point to the next.
+/// The first mu, for forms of size one.
+const FIRST: f64 = 0.25;
+/// Ratio of mu at a point to that at the last.
 const DECREASE: f64 = 0.25;
-/// Newton steps to a point, at most; steps of this length, and below, are whole, and the last.
-const STEPS: usize = 100;
+/// Newton steps to all points, at most: some dozens to a point where hundreds of pairs of walls are
+/// nearly the same, usually less than ten.
+const STEPS: usize = 600;
+/// The length of a step in the metric of the barrier below which it is whole: the next one then has
+/// about the square of it.
 const WHOLE: f64 = 0.25;
+/// The length of the last step to a point.
 const LAST: f64 = 1e-6;
+/// A step that rounding keeps from getting shorter is the last too, below this length.
+const ROUNDED: f64 = 1e-2;
+/// Share of the step to the end of the domain.
+const INSIDE: f64 = 0.9;
+/// Bisections of a longer step.
+const BISECTIONS: usize = 40;
 
 /// The way to the least largest eigenvalue.
 pub(super) struct CentralPath<'a> {
@@ -34,6 +45,10 @@ pub(super) struct CentralPath<'a> {
     factor: Matrix,
     /// t: no combination has a smaller largest eigenvalue.
     bound: f64,
+    /// The last point was reached.
+    reached: bool,
+    /// Newton steps that are left.
+    steps: usize,
 }
 
 /// A point of the path.
@@ -43,9 +58,10 @@ pub(super) struct Centre {
     pub(super) weights: Vec<f64>,
     /// The combination, products of walls included.
     pub(super) combination: Matrix,
-    /// By no more does the largest eigenvalue exceed the least one of all combinations
-    /// (lambda - t).
+    /// By no more does its largest eigenvalue exceed the least one of all combinations.
     pub(super) gap: f64,
+    /// False where the point was not reached: weights and gap are not those of the path.
+    pub(super) reached: bool,
 }
 
 /// A constraint of the dual program in the metric of Z, relative to its slack.
@@ -68,13 +84,14 @@ impl<'a> CentralPath<'a> {
             })
         });
         let root = share.fold(1.0, f64::min).sqrt();
-        let along = (1.0 + root * root).sqrt() - root;
-        let factor = Matrix::from_fn(m, m, |i, j| {
+        let along = if walls.is_empty() { 0.0 } else { (1.0 + root * root).sqrt() - root };
+        let factor = with_unit_trace(Matrix::from_fn(m, m, |i, j| {
             along * inside[i] * inside[j] / (size * size) + if i == j { root } else { 0.0 }
-        });
-        let factor = with_unit_trace(factor);
+        }));
         let least = forms.iter().map(|h| trace(&transformed(h, &factor))).fold(f64::MAX, f64::min);
-        Self { forms, walls, mu: 1.0, factor, bound: least - 1.0 }
+        // About the slacks of the first point.
+        let bound = least - FIRST * count(forms.len());
+        Self { forms, walls, mu: FIRST / DECREASE, factor, bound, reached: false, steps: STEPS }
     }
 
     /// Z.
@@ -90,10 +107,12 @@ impl<'a> CentralPath<'a> {
     pub(super) fn step(&mut self) -> Centre {
         self.mu *= DECREASE;
         let mut last = f64::INFINITY;
-        for _ in 0..STEPS {
-            let length = self.newton();
-            // Rounding ends the decrease too.
-            if !(length > LAST) || (length < 1e-2 && length > 0.5 * last) {
+        let mut along = std::mem::replace(&mut self.reached, false);
+        while self.steps > 0 {
+            self.steps -= 1;
+            let Some(length) = self.newton(std::mem::take(&mut along)) else { break };
+            if length < LAST || (length < ROUNDED && length > 0.5 * last) {
+                self.reached = true;
                 break;
             }
             last = length;
@@ -124,35 +143,43 @@ impl<'a> CentralPath<'a> {
         rows
     }
 
-    /// One step towards the point with the present mu; its length before it is shortened.
-    fn newton(&mut self) -> f64 {
+    /// One step towards the point with the present mu: its length, if it is finite. From the last point
+    /// it leads along the path: its rate by mu is that by 1 / mu, which Newton's step follows, times
+    /// the decrease of mu.
+    fn newton(&mut self, along_path: bool) -> Option<f64> {
         let m = self.factor.rows();
+        let edges = self.forms.len();
         let rows = self.rows();
         let square = &self.factor.transpose() * &self.factor;
         let normal = packed(m, |i, j| square[(i, j)]);
         let n = normal.len();
-        // Maximise t / mu + log det Z + sum log slack: the Hessian is -A^T A, the gradient A^T y.
-        // With tr dZ = 0 all columns are large where all rows are.
+        // Maximise t / mu + log det Z + sum log slack: the Hessian is -A^T A, the gradient A^T y. The
+        // trace is eliminated: all columns are then large where all rows are.
         let free = Qr::plain(Matrix::from_fn(n, 1, |i, _| normal[i])).complement();
-        let a = Matrix::from_fn(rows.len() + n, n, |i, j| match (rows.get(i), j + 1 == n) {
-            (Some(row), true) => row.gradient[n],
-            (Some(row), false) => dot(&row.gradient[..n], free.column(j)),
-            (None, true) => 0.0,
-            (None, false) => free[(i - rows.len(), j)],
-        });
-        let edges = self.forms.len();
         let slope: f64 = rows[..edges].iter().map(|row| -row.gradient[n]).sum();
         let share = (self.mu * slope).recip();
-        let mut y = vec![0.0; rows.len() + n];
-        y[..edges].fill(1.0 - share);
-        let rest = &mut y[rows.len()..];
-        rest.copy_from_slice(&packed(m, |i, j| if i == j { 1.0 } else { 0.0 }));
+        let mut rest = packed(m, |i, j| if i == j { 1.0 } else { 0.0 });
         for (i, row) in rows.iter().enumerate() {
             let share = if i < edges { share } else { 1.0 };
             rest.iter_mut().zip(&row.gradient).for_each(|(y, x)| *y += share * x);
         }
-        let along = dot(rest, &normal) / dot(&normal, &normal);
+        let along = dot(&rest, &normal) / dot(&normal, &normal);
         rest.iter_mut().zip(&normal).for_each(|(y, c)| *y -= along * c);
+        // Large rows first: only then are the small ones exact (Cox & Higham 1998).
+        let mut order: Vec<usize> = (0..rows.len()).collect();
+        order.sort_by(|&i, &j| max_abs(&rows[j].gradient).total_cmp(&max_abs(&rows[i].gradient)));
+        let a = Matrix::from_fn(rows.len() + n, n, |i, j| {
+            let row = order.get(i).map(|i| &rows[*i].gradient);
+            match (row, j + 1 == n) {
+                (Some(row), true) => row[n],
+                (Some(row), false) => dot(&row[..n], free.column(j)),
+                (None, true) => 0.0,
+                (None, false) => free[(i - rows.len(), j)],
+            }
+        });
+        let mut y: Vec<f64> =
+            order.iter().map(|i| if *i < edges { 1.0 - share } else { 0.0 }).collect();
+        y.extend(rest);
         let qr = Qr::pivoted(a);
         qr.apply_transposed(&mut y);
         let length = norm(&y[..n]);
@@ -161,22 +188,36 @@ impl<'a> CentralPath<'a> {
             solution[*i] = *x;
         }
         if !all_finite(&solution) {
-            return 0.0;
+            return None;
         }
-        let step = free.mul_vec(&solution[..n - 1]);
-        let scale = if length > WHOLE { (1.0 + length).recip() } else { 1.0 };
-        // 1 + X = U diag U^T, so that L U diag^(1/2) is the new root.
+        let mut step = free.mul_vec(&solution[..n - 1]);
+        step.push(solution[n - 1]);
+        // Z becomes L (1 + scale X) L^T.
         let entry = |i: usize, j: usize| {
             let (i, j) = (i.min(j), i.max(j));
-            let x = if j < m { scale * step[i * m - i * (i + 1) / 2 + j] } else { 0.0 };
-            if i == j { 1.0 + x } else { x / 2.0_f64.sqrt() }
+            let x = if j < m { step[i * m - i * (i + 1) / 2 + j] } else { 0.0 };
+            if i == j { x } else { x / 2.0_f64.sqrt() }
         };
         let change = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
         let eigen = SymmetricEigen::<6>::of(change, m);
-        let root = Matrix::from_fn(m, m, |i, j| eigen.vectors[j][i] * eigen.values[j].sqrt());
+        let scale = if length < WHOLE {
+            1.0
+        } else {
+            let mut changes: Vec<f64> = rows.iter().map(|row| dot(&row.gradient, &step)).collect();
+            changes.extend(&eigen.values[..m]);
+            let largest = -changes.iter().copied().fold(-1.0, f64::min).recip();
+            if along_path {
+                f64::min(DECREASE, INSIDE * largest)
+            } else {
+                best_scale(step[n] / self.mu, &changes, largest)
+            }
+        };
+        let root = Matrix::from_fn(m, m, |i, j| {
+            eigen.vectors[j][i] * (1.0 + scale * eigen.values[j]).max(0.0).sqrt()
+        });
         self.factor = with_unit_trace(&self.factor * &root);
-        self.bound += scale * solution[n - 1];
-        length
+        self.bound += scale * step[n];
+        Some(length)
     }
 
     fn centre(&self) -> Centre {
@@ -204,9 +245,29 @@ impl<'a> CentralPath<'a> {
                 add(*weight, &|i, j| 0.5 * (a[i] * b[j] + a[j] * b[i]));
             }
         }
-        let count = u32::try_from(edges + self.pairs() + m).map_or(f64::INFINITY, f64::from);
-        Centre { weights: weights[..edges].to_vec(), combination, gap: count * self.mu }
+        let gap = count(edges + self.pairs() + m) * self.mu;
+        Centre { weights: weights[..edges].to_vec(), combination, gap, reached: self.reached }
     }
+}
+
+fn count(n: usize) -> f64 {
+    u32::try_from(n).map_or(f64::INFINITY, f64::from)
+}
+
+/// The share of a step, up to the largest in the domain, at which linear + sum log(1 + share change)
+/// is largest.
+fn best_scale(linear: f64, changes: &[f64], largest: f64) -> f64 {
+    let (mut low, mut high) = (0.0, largest);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        let slope = changes.iter().map(|x| x / (1.0 + middle * x)).sum::<f64>() + linear;
+        if slope > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }
 
 fn trace(a: &Matrix) -> f64 {
@@ -285,7 +346,8 @@ mod tests {
             let mut path = path(&program);
             let mut last = f64::INFINITY;
             loop {
-                let Centre { weights, combination, gap } = path.step();
+                let Centre { weights, combination, gap, reached } = path.step();
+                assert!(reached, "{round} {gap}");
                 let bound = path.bound;
                 assert!(
                     (weights.iter().sum::<f64>() - 1.0).abs() < 1e-12
@@ -362,6 +424,73 @@ mod tests {
                 let off = turned(&a.combination).max_difference(&b.combination);
                 assert!(off < 1e-8, "{round} {step}: {off:e}");
                 assert!((here.bound - there.bound).abs() < 1e-10);
+            }
+        }
+    }
+
+    /// Hundreds of forms, in another basis and order.
+    #[test]
+    fn many_forms() {
+        let mut seed = 11;
+        let program = random(&mut seed, 5, 600, 0);
+        let turn = Qr::plain(Matrix::from_fn(5, 5, |_, _| uniform(&mut seed) - 0.5)).basis();
+        let turned = |h: &Matrix| transformed(h, &turn);
+        let other = Program {
+            forms: program.forms.iter().rev().map(turned).collect(),
+            walls: Vec::new(),
+            inside: (0..5).map(|_| uniform(&mut seed) - 0.5).collect(),
+        };
+        let (mut here, mut there) = (path(&program), path(&other));
+        for step in 0..8 {
+            let (a, b) = (here.step(), there.step());
+            assert!(a.reached && b.reached, "{step}");
+            let weights = a.weights.iter().zip(b.weights.iter().rev());
+            let off = weights.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-11, "{step}: {off:e}");
+        }
+    }
+
+    /// Zero and equal forms, walls given twice, thin cones, walls of very different sizes: no number
+    /// is a NaN, weights are shares, and a point that is reached has its gap.
+    #[test]
+    fn degenerate_programs() {
+        let zero = Matrix::zeros(3, 3);
+        let one = Matrix::identity(3);
+        let mixed = Matrix::from_fn(3, 3, |i, j| {
+            [[-1.0, 1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 0.0, -1.0]][i][j]
+        });
+        let thin = |e: f64| vec![vec![e, 1.0, 0.0], vec![e, -1.0, 0.0]];
+        let walls = [
+            vec![],
+            vec![vec![1.0, 0.0, 0.0]; 3],
+            vec![vec![1e-6, 0.0, 0.0], vec![1.0, 1.0, 0.0], vec![1.0, -1.0, 1e3]],
+            thin(1e-2),
+            thin(1e-4),
+            thin(1e-7),
+            thin(1e-10),
+        ];
+        let x = [1.0, 0.0, 0.0];
+        for walls in &walls {
+            for forms in [
+                vec![zero.clone()],
+                vec![one.clone(); 4],
+                vec![zero.clone(), mixed.clone()],
+                vec![mixed.clone()],
+            ] {
+                let mut path = CentralPath::new(&forms, walls, &x);
+                for _ in 0..12 {
+                    let Centre { weights, combination, gap, reached } = path.step();
+                    assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)), "{weights:?}");
+                    assert!(combination.is_finite() && path.moments().is_finite());
+                    let value = largest(&combination);
+                    let rounding = 1e-8 + 1e-14 * combination.frobenius_norm();
+                    assert!(
+                        !reached || value <= path.bound + gap + rounding,
+                        "{walls:?} {forms:?} {value} {} {gap}",
+                        path.bound
+                    );
+                    assert!(path.bound <= value + rounding, "{walls:?} {forms:?}");
+                }
             }
         }
     }

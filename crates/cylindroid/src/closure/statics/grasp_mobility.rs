@@ -123,8 +123,8 @@ pub struct GraspMobility {
     /// All forces in equilibrium are their combinations with positive weights.
     pub equilibria: Matrix,
     /// The equilibrium forces of the relative curvature form: the mean of the extreme ones, or, if
-    /// only others block all free motions, the first that do on the central path to the form with the
-    /// least largest eigenvalue. Empty without equilibrium.
+    /// their form is not negative definite and others block all free motions, the first that do on
+    /// the central path to the form with the least largest eigenvalue. Empty without equilibrium.
     pub forces: Vec<f64>,
     /// Free motions as columns: principal motions of the relative curvature form, with
     /// `|v|^2 + L^2 |w|^2 = 1` at the centre of the contacts.
@@ -357,12 +357,9 @@ impl Analysis {
             match curvature.opening(&combination) {
                 Some((least, y)) if least > SECOND_ORDER => {
                     let mut velocity = kernel.mul_vec(&y);
-                    // The opposite motion often opens them as much.
-                    let back: Vec<f64> = y.iter().map(|y| -y).collect();
+                    // Without walls the opposite motion opens them as much.
                     let first = velocity.iter().find(|x| x.abs() > EQUAL_CURVATURES);
-                    if first.is_some_and(|x| *x < 0.0)
-                        && curvature.least(&back) > least - EQUAL_CURVATURES
-                    {
+                    if curvature.walls.is_empty() && first.is_some_and(|x| *x < 0.0) {
                         velocity.iter_mut().for_each(|x| *x = -*x);
                     }
                     report.escape = self.second_order_escape(&velocity, &presses);

@@ -7,13 +7,13 @@
 //! Shapes   H_r: m x m, m <= 6
 //! Units    none (scaled)
 //! Valid    motions in the cone W y >= 0, W of the contacts that press in no equilibrium: products of
-//!          two of their rows are added to the forms with positive weights. Whether one combination
-//!          blocks all motions is decided (`central_path.rs`); with more than four walls, or several
-//!          forms, none may although all motions are blocked. The motion that opens the gaps most is
-//!          searched, and may be missed
+//!          two of their rows are added to the forms with positive weights. Whether a combination
+//!          with them is below -SECOND_ORDER is decided (`central_path.rs`); with more than four
+//!          walls, or several forms, none may be although all motions are blocked. The motion that
+//!          opens the gaps most is searched, and may be missed
 //! Why so   for each motion forces of its own may suffice, but a common form is a proof
 //! Source   Rimon & Burdick 1998, part II; Connelly & Whiteley 1996 (prestress stability);
-//!          products of walls: Parrilo 2000 (copositive forms)
+//!          products of walls: Diananda 1962, Martin & Jacobson 1981 (copositive forms)
 //! Checked  tests/it/closure/grasp_mobility/equilibria.rs, tests in this file
 
 use super::central_path::CentralPath;
@@ -21,21 +21,27 @@ use super::nearest_point::nearest_point;
 use super::separating_direction::separating_direction;
 use crate::linalg::{Matrix, SymmetricEigen, dot, norm};
 use crate::scalar::uniform;
-use crate::tolerance::{CANCELLED, SECOND_ORDER};
+use crate::tolerance::{CANCELLED, EQUAL_CURVATURES, SECOND_ORDER};
 
 /// The path ends this near to the least largest eigenvalue.
 const GAP: f64 = 0.1 * SECOND_ORDER;
-/// Sums of principal motions that are tried, with all signs; the best motions, which are improved.
+/// Rounding of an eigenvalue, relative to the combination: products of walls may be large.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Sums of principal motions that are tried, with all signs.
 const TRIED: usize = 8;
+/// The best motions, which are improved.
 const IMPROVED: usize = 8;
-/// Steps of an ascent. Forms and walls this near to the least one take part, nearer ones after each
-/// failure: no step longer than a share of it leads on.
+/// Steps of an ascent, at most.
 const STEPS: usize = 100;
+/// Forms and walls this near to the least one take part in it.
 const NEAR: f64 = 0.1;
+/// Nearer ones by this factor after a failure.
 const NEARER: f64 = 0.2;
+/// The ascent ends with these.
 const NEAREST: f64 = 1e-9;
+/// The shortest step, relative to what is near: shorter ones lead nowhere.
 const SHORTEST: f64 = 1e-3;
-/// Share of the rise that the slope promises.
+/// The least rise of a step, relative to that which the slope promises.
 const RISE: f64 = 0.1;
 
 /// The forms of a grasp on its free motions.
@@ -50,8 +56,8 @@ pub(super) struct RelativeCurvature {
 
 /// A combination of the forms.
 pub(super) struct Combination {
-    /// A weight for each edge; they sum to 1. The first ones found that block all motions on the way
-    /// from equal weights to those with the least largest eigenvalue; equal ones if none do.
+    /// A weight for each edge; they sum to 1. Equal ones, unless these do not block all motions
+    /// without products of walls and those of a point of the central path do: the first such point.
     pub(super) weights: Vec<f64>,
     /// True if it blocks all motions within the walls.
     pub(super) blocks: bool,
@@ -62,9 +68,13 @@ pub(super) struct Combination {
 impl RelativeCurvature {
     /// Eigenvalues, largest first, and eigenvectors of a combination of the forms.
     pub(super) fn eigen(&self, weights: &[f64]) -> SymmetricEigen<6> {
+        eigen(&self.combined(weights))
+    }
+
+    fn combined(&self, weights: &[f64]) -> Matrix {
         let m = self.motions;
         let pairs = || self.forms.iter().zip(weights);
-        eigen(&Matrix::from_fn(m, m, |i, j| pairs().map(|(form, w)| w * form[(i, j)]).sum()))
+        Matrix::from_fn(m, m, |i, j| pairs().map(|(form, w)| w * form[(i, j)]).sum())
     }
 
     /// A motion inside of all walls; any one without walls.
@@ -82,14 +92,18 @@ impl RelativeCurvature {
         let even = vec![1.0 / f64::from(u32::try_from(edges).unwrap_or(u32::MAX)); edges];
         let blocks = self.eigen(&even).values[..m].first().is_none_or(|v| *v < -SECOND_ORDER);
         let mut combination = Combination { weights: even, blocks, open: None };
-        if blocks || (edges == 1 && self.walls.is_empty()) {
+        if blocks || (edges == 1 && self.walls.len() < 2) {
             return combination;
         }
         let Some(inside) = self.inside() else { return combination };
         let mut path = CentralPath::new(&self.forms, &self.walls, &inside);
         loop {
             let centre = path.step();
-            if eigen(&centre.combination).values[0] < -SECOND_ORDER {
+            if !centre.reached {
+                break;
+            }
+            let rounding = ROUNDING * centre.combination.frobenius_norm();
+            if eigen(&centre.combination).values[0] < -SECOND_ORDER - rounding {
                 combination.weights = centre.weights;
                 combination.blocks = true;
                 return combination;
@@ -117,27 +131,52 @@ impl RelativeCurvature {
     /// the open motions, and sums of these with all signs, since those of eigenvectors are arbitrary.
     fn starts(&self, combination: &Combination) -> Vec<Vec<f64>> {
         let m = self.motions;
-        let own = self.eigen(&combination.weights);
-        let open = combination.open.as_ref().map(eigen);
+        let own = self.principal(&self.combined(&combination.weights));
+        let open = combination.open.as_ref().map(|open| self.principal(open));
         let inside = self.inside().filter(|_| !self.walls.is_empty());
         let mut starts: Vec<Vec<f64>> = inside.into_iter().collect();
-        for axis in [Some(own), open].iter().flatten().flat_map(|found| &found.vectors[..m]) {
-            starts.extend([1.0, -1.0].map(|sign| axis[..m].iter().map(|x| sign * x).collect()));
+        for (_, axis) in own.iter().chain(open.iter().flatten()) {
+            starts.extend([1.0, -1.0].map(|sign| axis.iter().map(|x| sign * x).collect()));
         }
-        let axes = open.unwrap_or(own).vectors;
-        let sizes = open.map_or([1.0; 6], |open| open.values.map(|value| value.max(0.0).sqrt()));
+        let axes = open.as_ref().unwrap_or(&own);
+        let size = |value: f64| if open.is_some() { value.max(0.0).sqrt() } else { 1.0 };
         let mut seed = 0;
         for round in 0..TRIED {
-            let even = round % 2 == 0;
-            let share = |size: &f64| uniform(&mut seed) * if even { *size } else { 1.0 };
-            let shares: Vec<f64> = sizes[..m].iter().map(share).collect();
+            let scaled = round % 2 == 0;
+            let share = |axis: &(f64, Vec<f64>)| {
+                uniform(&mut seed) * if scaled { size(axis.0) } else { 1.0 }
+            };
+            let shares: Vec<f64> = axes.iter().map(share).collect();
             for signs in 0..1_usize << m {
                 let share = |k: usize| if (signs >> k) & 1 == 0 { shares[k] } else { -shares[k] };
-                let entry = |i: usize| (0..m).map(|k| share(k) * axes[k][i]).sum();
+                let entry = |i: usize| (0..m).map(|k| share(k) * axes[k].1[i]).sum();
                 starts.push((0..m).map(entry).collect());
             }
         }
         starts
+    }
+
+    /// Eigenvalues and eigenvectors of a form; of those with equal eigenvalues the principal motions
+    /// of the sum of the squares of all forms, as these turn with the grasp.
+    fn principal(&self, form: &Matrix) -> Vec<(f64, Vec<f64>)> {
+        let m = self.motions;
+        let found = eigen(form);
+        let mut axes = Vec::new();
+        while axes.len() < m {
+            let from = axes.len();
+            let equal = |value: &&f64| (found.values[from] - **value).abs() <= EQUAL_CURVATURES;
+            let to = from + found.values[from..m].iter().take_while(equal).count().max(1);
+            let own = Matrix::from_fn(m, to - from, |i, k| found.vectors[from + k][i]);
+            let products: Vec<Matrix> = self.forms.iter().map(|form| form * &own).collect();
+            let all = Matrix::vstack(to - from, &products.iter().collect::<Vec<_>>());
+            let sum = &all.transpose() * &all;
+            let turn = eigen(&sum);
+            axes.extend(
+                (from..to)
+                    .map(|k| (found.values[k], own.mul_vec(&turn.vectors[k - from][..to - from]))),
+            );
+        }
+        axes
     }
 
     /// The motion at the end of an ascent of the least of all forms and walls, with its value.
@@ -194,7 +233,7 @@ impl RelativeCurvature {
     }
 
     /// Smallest of all forms and walls at a unit motion.
-    pub(super) fn least(&self, y: &[f64]) -> f64 {
+    fn least(&self, y: &[f64]) -> f64 {
         let forms = self.forms.iter().map(|form| dot(&form.mul_vec(y), y));
         forms.chain(self.walls.iter().map(|wall| dot(wall, y))).fold(f64::INFINITY, f64::min)
     }
@@ -248,6 +287,49 @@ mod tests {
         let three = [turned(0.0), turned(60.0), turned(120.0)];
         assert_eq!(found(&three, &[]), (true, false));
         assert_eq!(found(&three[..2], &[]), (true, false));
+    }
+
+    /// Forms whose mean is a multiple of one, in other bases and another order: the same motion opens
+    /// them most, and verdicts agree.
+    #[test]
+    fn openings_turn_with_the_forms() {
+        let (mut seed, mut open) = (3, 0);
+        for round in 0..30 {
+            let (m, edges) = (3 + round % 3, 6 + round % 5);
+            let mut next = || 2.0 * uniform(&mut seed) - 1.0;
+            let any: Vec<Matrix> =
+                (0..edges).map(|_| Matrix::from_fn(m, m, |_, _| 0.3 * next())).collect();
+            let mean = |i: usize, j: usize| {
+                let sum: f64 = any.iter().map(|a| a[(i, j)] + a[(j, i)]).sum();
+                sum / f64::from(u32::try_from(edges).unwrap())
+            };
+            let shift = 0.2 * next();
+            let forms: Vec<Matrix> = any
+                .iter()
+                .map(|a| {
+                    let one = |i, j| if i == j { shift } else { 0.0 };
+                    Matrix::from_fn(m, m, |i, j| a[(i, j)] + a[(j, i)] - mean(i, j) + one(i, j))
+                })
+                .collect();
+            let mut values = Vec::new();
+            for basis in 0..3 {
+                let turn = crate::linalg::Qr::plain(Matrix::from_fn(m, m, |_, _| next())).basis();
+                let mut forms: Vec<Matrix> =
+                    forms.iter().map(|h| &(&turn.transpose() * h) * &turn).collect();
+                forms.rotate_left(basis);
+                let curvature = RelativeCurvature { forms, walls: Vec::new(), motions: m };
+                let combination = curvature.blocking();
+                let opening = curvature.opening(&combination).unwrap().0;
+                values.push(if combination.blocks { f64::NEG_INFINITY } else { opening });
+            }
+            open += usize::from(values[0] > SECOND_ORDER);
+            if values.iter().all(|value| *value == f64::NEG_INFINITY) {
+                continue;
+            }
+            let off = values.iter().map(|v| (v - values[0]).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-7, "{round}: {values:?}");
+        }
+        assert!(open > 5, "{open}");
     }
 
     /// x y is negative outside of the walls and positive within, or the other way round.
