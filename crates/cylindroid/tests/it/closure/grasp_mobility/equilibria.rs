@@ -128,10 +128,24 @@ fn one_equilibrium_and_few_walls_are_decided() {
     for round in 0..400 {
         let mut touches: Vec<Touch> =
             [Vec3::X, -Vec3::X].map(|outward| touch(outward, true, &mut random)).to_vec();
+        if round % 2 == 0 {
+            // Hollows hold all but the spin about their line, others beside it hold the spin.
+            for t in &mut touches {
+                t.object = Surface::Ball(-random.within(0.5, 3.0));
+            }
+        }
         for _ in 0..round % 5 {
             let v = random.vec3(1.0);
             let outward = v * (v.z.signum() / v.norm());
-            touches.push(touch(outward, true, &mut random));
+            let normal = Vec3::new(random.within(-1.0, 1.0), random.within(-1.0, 1.0), -0.5);
+            let finger = Surface::Ball(random.within(0.0, 0.3));
+            let object = Surface::Flat;
+            touches.push(Touch {
+                point: outward,
+                normal: normal * (1.0 / normal.norm()),
+                finger,
+                object,
+            });
         }
         let found = mobility(&touches, SPACE);
         assert_eq!((found.equilibria.cols(), found.first_order_mobility), (1, 5));
