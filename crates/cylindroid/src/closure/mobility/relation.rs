@@ -15,12 +15,18 @@
 //! Source   Bicchi & Prattichizzo 1998, sections 2 to 4; virtual work for F
 //! Checked  tests/it/closure/reference.rs, tests/it/closure/laws.rs
 
+use std::ops::RangeInclusive;
+
 use crate::closure::constraint::velocity_constraint::check_finite;
 use crate::error::{Error, Result};
 use crate::linalg::{
     ColumnSpace, CsDecomposition, Cut, Matrix, PairKind, Qr, Threshold, dot, max_abs, solve_upper,
 };
-use crate::tolerance::CLOSURE_BLOCK;
+use crate::scalar::power_of_two;
+use crate::tolerance::{CLOSURE_BLOCK, MAX_MAGNITUDE};
+
+/// What the largest entry of a row of a task map can be: its square is a number.
+const TASK_ROWS: RangeInclusive<f64> = 1.0 / MAX_MAGNITUDE..=MAX_MAGNITUDE;
 
 /// The counts of a relation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -201,17 +207,31 @@ impl Relation {
     ///
     /// # Errors
     /// A map whose number of columns is not the size of u, with linearly dependent rows, NaN or
-    /// infinity.
+    /// infinity, or with a row whose largest entry is out of range.
     pub fn task(&self, map: &Matrix) -> Result<Self> {
         Error::check_len("columns of the task map", self.object(), map.cols())?;
         check_finite("task map", map)?;
         // In scaled coordinates T' = R^T Q^T; Q^T u' are the scaled coordinates of the task, so
         // that the result is independent of its units and of the lengths of its rows.
         let m = map.rows();
+        for i in 0..m {
+            let size = (0..map.cols()).map(|j| map[(i, j)].abs()).fold(0.0, f64::max);
+            if size > 0.0 && !TASK_ROWS.contains(&size) {
+                return Err(Error::InvalidOption {
+                    option: "task",
+                    value: format!("row {} of the map", i + 1),
+                    reason: format!(
+                        "its largest entry is {size:e}; from {:e} to {:e} are accepted",
+                        TASK_ROWS.start(),
+                        TASK_ROWS.end()
+                    ),
+                });
+            }
+        }
         let scaled = (map * &self.scale.twist).transpose();
+        let sizes: Vec<f64> = (0..m).map(|j| max_abs(scaled.column(j))).collect();
         let rows = Matrix::from_fn(scaled.rows(), m, |i, j| {
-            let size = max_abs(scaled.column(j));
-            if size > 0.0 { scaled[(i, j)] / size } else { 0.0 }
+            if sizes[j] > 0.0 { scaled[(i, j)] / sizes[j] } else { 0.0 }
         });
         let rank = ColumnSpace::of(&rows, Threshold::Relative(CLOSURE_BLOCK)).rank();
         if rank < m {
@@ -222,8 +242,13 @@ impl Relation {
                     .to_owned(),
             });
         }
-        let qr = Qr::plain(scaled.clone());
-        let r = qr.r();
+        // Powers of two change no digit, and squares neither overflow nor vanish.
+        let powers: Vec<f64> = sizes.iter().map(|size| power_of_two(*size)).collect();
+        let times = |a: &Matrix, factor: &dyn Fn(usize) -> f64| {
+            Matrix::from_fn(a.rows(), m, |i, j| a[(i, j)] * factor(j))
+        };
+        let qr = Qr::plain(times(&scaled, &|j| powers[j].recip()));
+        let r = times(&qr.r(), &|j| powers[j]);
         let reduce = qr.basis();
         let mut wrench = Matrix::identity(m);
         for j in 0..m {

@@ -286,3 +286,36 @@ fn inertia_that_is_not_there() {
     let error = Metrics::UNIT.with_inertia(&state, frame).unwrap_err().to_string();
     assert!(error.contains("link 'link2' has no mass"), "{error}");
 }
+
+/// Units of the task change efficiencies by their square, also far from one; rows whose squares are no
+/// numbers are refused.
+#[test]
+fn sizes_of_tasks() {
+    let relation = relation("fivebar_sec5_case_c");
+    let map = |size: f64| {
+        let entry = |i: usize, j: usize| if i == j { size * [1.0, 0.5][i] } else { 0.1 * size };
+        Matrix::from_fn(2, relation.object(), entry)
+    };
+    let of = |size: f64| {
+        let task = relation.task(&map(size))?;
+        Manipulability::of(&task, &Metrics::UNIT.for_task(&map(size))?)
+    };
+    let unit = |size: f64| Manipulability::of(&relation.task(&map(size)).unwrap(), &Metrics::UNIT);
+    // In the metric of the smallest twists units do not count; in that of the numbers they do.
+    let (one, plain) = (of(1.0).unwrap(), unit(1.0).unwrap());
+    for size in [1e-118, 1e-70, 1e-9, 1e9, 1e70, 1e118] {
+        assert_close(
+            "kinematic",
+            &of(size).unwrap().kinematic.values(),
+            &one.kinematic.values(),
+            1e-9,
+        );
+        let scaled: Vec<f64> =
+            unit(size).unwrap().kinematic.values().iter().map(|v| v / size / size).collect();
+        assert_close("scaled", &scaled, &plain.kinematic.values(), 1e-9);
+    }
+    for size in [5e-319, 5e-300, 1e-121, 1e121, 1e200, 1e300] {
+        let error = of(size).unwrap_err().to_string();
+        assert!(error.contains("row 1 of the map") && error.contains("1e-120 to 1e120"), "{error}");
+    }
+}
