@@ -229,10 +229,9 @@ impl Relation {
             }
         }
         let scaled = (map * &self.scale.twist).transpose();
-        let sizes: Vec<f64> = (0..m).map(|j| max_abs(scaled.column(j))).collect();
-        let rows = Matrix::from_fn(scaled.rows(), m, |i, j| {
-            if sizes[j] > 0.0 { scaled[(i, j)] / sizes[j] } else { 0.0 }
-        });
+        // Powers of two change no digit, and squares neither overflow nor vanish.
+        let sizes: Vec<f64> = (0..m).map(|j| power_of_two(max_abs(scaled.column(j)))).collect();
+        let rows = Matrix::from_fn(scaled.rows(), m, |i, j| scaled[(i, j)] / sizes[j]);
         let rank = ColumnSpace::of(&rows, Threshold::Relative(CLOSURE_BLOCK)).rank();
         if rank < m {
             return Err(Error::InvalidOption {
@@ -242,13 +241,11 @@ impl Relation {
                     .to_owned(),
             });
         }
-        // Powers of two change no digit, and squares neither overflow nor vanish.
-        let powers: Vec<f64> = sizes.iter().map(|size| power_of_two(*size)).collect();
-        let times = |a: &Matrix, factor: &dyn Fn(usize) -> f64| {
-            Matrix::from_fn(a.rows(), m, |i, j| a[(i, j)] * factor(j))
-        };
-        let qr = Qr::plain(times(&scaled, &|j| powers[j].recip()));
-        let r = times(&qr.r(), &|j| powers[j]);
+        let qr = Qr::plain(rows);
+        let mut r = qr.r();
+        for (j, size) in sizes.iter().enumerate() {
+            r.column_mut(j).iter_mut().for_each(|x| *x *= size);
+        }
         let reduce = qr.basis();
         let mut wrench = Matrix::identity(m);
         for j in 0..m {

@@ -16,7 +16,7 @@
 //!          products of walls: Diananda 1962, Martin & Jacobson 1981 (copositive forms)
 //! Checked  tests/it/closure/grasp_mobility/equilibria.rs, tests in this file
 
-use super::central_path::CentralPath;
+use super::central_path::{CentralPath, eigen};
 use super::nearest_point::nearest_point;
 use super::separating_direction::separating_direction;
 use crate::linalg::{Matrix, SymmetricEigen, dot, norm};
@@ -242,12 +242,6 @@ impl RelativeCurvature {
 fn unit(y: Vec<f64>) -> Option<Vec<f64>> {
     let size = norm(&y);
     (size > CANCELLED).then(|| y.iter().map(|y| y / size).collect())
-}
-
-fn eigen(form: &Matrix) -> SymmetricEigen<6> {
-    let m = form.rows();
-    let entry = |i: usize, j: usize| if i < m && j < m { form[(i, j)] } else { 0.0 };
-    SymmetricEigen::of(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))), m)
 }
 
 #[cfg(test)]
